@@ -1,0 +1,22 @@
+//! What stages hand to each other: one file a kind, each with a schema number. No algorithm lives here.
+//!
+//! [`Content`] is anything whose bytes can be hashed: it may come from a laboratory's file (a frame, a calibration, a
+//! mesh) and never be stored. [`Artifact`] is content that a stage made and the store keeps: it can be written to bytes
+//! and read back. Both say their kind and schema number, which go into the cache key of whatever reads them.
+
+mod calibration;
+mod content;
+mod curves;
+mod frame;
+mod matched;
+mod model;
+mod npy;
+mod picture;
+
+pub use calibration::{Calibration, DistortionTable, PixelOrigin};
+pub use content::{Artifact, Content, ContentHash, ContentHasher, DecodeError};
+pub use curves::Curves;
+pub use frame::Frame;
+pub use matched::{Match, PoseRecord, Verdict, ViewFit};
+pub use model::{ModelMesh, Start};
+pub use picture::Picture;

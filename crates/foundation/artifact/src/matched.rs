@@ -1,0 +1,148 @@
+//! The answer of a match: a pose, how well it fits, how sure it is, and whether it can be trusted.
+
+use biplane_geometry::{Pose, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::content::hash_encoded;
+use crate::{Artifact, Content, ContentHash, DecodeError};
+
+/// Whether a pose can be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Fits in every view; use it.
+    Good,
+    /// Fits, but something speaks against it; look at its overlay.
+    Doubtful,
+    /// Does not fit; the pose is only where the search ended.
+    Failed,
+}
+
+impl Verdict {
+    /// The word in files and tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Doubtful => "doubtful",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// A pose as numbers: `world_from_model`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PoseRecord {
+    /// Translation, mm.
+    pub translation_mm: [f64; 3],
+    /// Unit quaternion, scalar first.
+    pub quaternion_wxyz: [f64; 4],
+}
+
+impl From<Pose> for PoseRecord {
+    fn from(pose: Pose) -> Self {
+        let (t, q) = (pose.translation(), pose.rotation());
+        // The one of the two quaternions of a rotation whose scalar part is not negative.
+        let s = if q.w < 0.0 { -1.0 } else { 1.0 };
+        Self { translation_mm: [t.x, t.y, t.z], quaternion_wxyz: [s * q.w, s * q.i, s * q.j, s * q.k] }
+    }
+}
+
+impl From<PoseRecord> for Pose {
+    fn from(record: PoseRecord) -> Self {
+        let [w, x, y, z] = record.quaternion_wxyz;
+        let rotation = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+        Pose::new(rotation, Vector3::from(record.translation_mm))
+    }
+}
+
+/// How one view's outline fits its edges.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ViewFit {
+    /// Root mean square distance of the matched outline points from their edges, px.
+    pub rms_px: f64,
+    /// The same at the body's depth, mm.
+    pub rms_mm: f64,
+    /// Share of the visible outline's length, within the image, that found its edge, 0 to 1.
+    pub matched_share: f64,
+    /// Share of the outline's length that lies within the image, 0 to 1.
+    pub in_image_share: f64,
+    /// Length of the outline, px.
+    pub outline_px: f64,
+}
+
+/// One body in one frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Match {
+    /// `world_from_model`.
+    pub pose: PoseRecord,
+    /// Whether to trust it.
+    pub verdict: Verdict,
+    /// Why the verdict is not good; empty if it is.
+    pub reason: String,
+    /// One a view, in the order of the views.
+    pub views: Vec<ViewFit>,
+    /// Covariance of the pose, rows: translation x, y, z (mm), then rotation x, y, z (rad), in laboratory axes, at the
+    /// mesh's area centroid. From the residuals of the outline alone: a wrong calibration or mesh is not in it.
+    pub covariance: [[f64; 6]; 6],
+    /// Steps of the optimiser, all starts together.
+    pub iterations: u32,
+}
+
+impl Match {
+    /// Standard deviation of the centroid's position, mm: root of the sum over the three axes.
+    pub fn translation_sigma_mm(&self) -> f64 {
+        (0..3).map(|i| self.covariance[i][i]).sum::<f64>().sqrt()
+    }
+
+    /// Standard deviation of the rotation, rad: root of the sum over the three axes.
+    pub fn rotation_sigma_rad(&self) -> f64 {
+        (3..6).map(|i| self.covariance[i][i]).sum::<f64>().sqrt()
+    }
+}
+
+impl Content for Match {
+    const KIND: &'static str = "match";
+    const SCHEMA: u32 = 1;
+    fn content_hash(&self) -> ContentHash {
+        hash_encoded::<Self>(&self.encode())
+    }
+}
+
+impl Artifact for Match {
+    const EXTENSION: &'static str = "json";
+
+    fn encode(&self) -> Vec<u8> {
+        // A struct of numbers and texts always has a JSON form.
+        let mut bytes = serde_json::to_vec_pretty(self).unwrap_or_default();
+        bytes.push(b'\n');
+        bytes
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
+        serde_json::from_slice(bytes).map_err(DecodeError::of::<Self>)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_trip_keeps_every_bit() {
+        let pose = Pose::new(
+            nalgebra::UnitQuaternion::from_euler_angles(0.1, 0.2, 3.1),
+            Vector3::new(1.0 / 3.0, -2e-7, 1e5 / 7.0),
+        );
+        let value = Match {
+            pose: pose.into(),
+            verdict: Verdict::Doubtful,
+            reason: "view B: 41 % of the outline found".to_owned(),
+            views: vec![],
+            covariance: [[1.0 / 7.0; 6]; 6],
+            iterations: 12,
+        };
+        assert_eq!(Match::decode(&value.encode()), Ok(value.clone()));
+        assert!(Pose::from(value.pose).rotation().angle_to(&pose.rotation()) < 1e-9);
+        assert!(Match::decode(b"{}").is_err());
+    }
+}
