@@ -2,6 +2,9 @@
 
 pub mod config;
 pub mod diagnostics;
+pub mod outcome;
 pub mod reference;
+pub mod report;
+pub mod results;
 pub mod study;
 pub mod tables;

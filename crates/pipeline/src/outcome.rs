@@ -1,0 +1,134 @@
+//! What a run found, ready to be written: every frame of every trial, every body in it, and what went wrong.
+
+use std::path::PathBuf;
+
+use biplane_artifact::{Match, Verdict};
+use biplane_geometry::Pose;
+
+/// Where a start pose came from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StartKind {
+    /// A row of `edits/poses.csv`.
+    Edit,
+    /// A row of the trial's table of starts.
+    File,
+    /// Between given ones, or the nearest given one at the ends.
+    Interpolated,
+}
+
+impl StartKind {
+    /// The word in files and tables.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Edit => "edit",
+            Self::File => "file",
+            Self::Interpolated => "interpolated",
+        }
+    }
+}
+
+/// One body in one frame.
+#[derive(Debug, Clone)]
+pub struct BodyOutcome {
+    /// Index of the body in the study.
+    pub body: usize,
+    /// Where its start came from.
+    pub start: StartKind,
+    /// The start itself.
+    pub start_pose: Pose,
+    /// The match, or why there is none.
+    pub result: Result<Match, String>,
+}
+
+impl BodyOutcome {
+    /// The verdict; a match that could not be made has failed.
+    pub fn verdict(&self) -> Verdict {
+        self.result.as_ref().map_or(Verdict::Failed, |m| m.verdict)
+    }
+
+    /// Why the verdict is not good; empty if it is.
+    pub fn reason(&self) -> String {
+        match &self.result {
+            Ok(found) => found.reason.clone(),
+            Err(message) => format!("not matched: {message}"),
+        }
+    }
+
+    /// Root mean square over the views of the fit in mm and in px, if there is a match.
+    pub fn fit(&self) -> Option<[f64; 2]> {
+        let views = &self.result.as_ref().ok()?.views;
+        let mean = |f: fn(&biplane_artifact::ViewFit) -> f64| {
+            (views.iter().map(|v| f(v).powi(2)).sum::<f64>() / views.len() as f64).sqrt()
+        };
+        (!views.is_empty()).then(|| [mean(|v| v.rms_mm), mean(|v| v.rms_px)])
+    }
+}
+
+/// One pair (or more) of pictures taken together.
+#[derive(Debug, Clone)]
+pub struct FrameOutcome {
+    /// Index of the trial in the study.
+    pub trial: usize,
+    /// The frame's label.
+    pub label: String,
+    /// Seconds from the trial's first picture, if known.
+    pub time_s: Option<f64>,
+    /// In the order of the trial's bodies.
+    pub bodies: Vec<BodyOutcome>,
+    /// Index of the view, and its overlay relative to the folder of results, where there is one.
+    pub overlays: Vec<(usize, PathBuf)>,
+}
+
+/// An item that could not be done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failure {
+    /// `step/trial/frame/...`
+    pub item: String,
+    /// Why, for people.
+    pub message: String,
+}
+
+/// How many items of one step were done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StepCount {
+    /// Taken from the store.
+    pub cached: usize,
+    /// Run now.
+    pub ran: usize,
+    /// Failed, or not reached.
+    pub failed: usize,
+}
+
+/// All that a run found.
+#[derive(Debug, Clone, Default)]
+pub struct Outcome {
+    /// In the order of trials and frames.
+    pub frames: Vec<FrameOutcome>,
+    /// Worth a look, in order.
+    pub warnings: Vec<String>,
+    /// In order.
+    pub failures: Vec<Failure>,
+    /// Name of a step and its count, in the order of the steps.
+    pub steps: Vec<(&'static str, StepCount)>,
+}
+
+impl Outcome {
+    /// All bodies in all frames.
+    pub fn rows(&self) -> impl Iterator<Item = (&FrameOutcome, &BodyOutcome)> {
+        self.frames.iter().flat_map(|f| f.bodies.iter().map(move |b| (f, b)))
+    }
+
+    /// How many verdicts are good, doubtful and failed.
+    pub fn verdicts(&self) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for (_, body) in self.rows() {
+            counts[body.verdict() as usize] += 1;
+        }
+        counts
+    }
+
+    /// Whether anything failed: an item that could not be done, or a match that does not fit.
+    pub fn any_failed(&self) -> bool {
+        !self.failures.is_empty() || self.verdicts()[Verdict::Failed as usize] > 0
+    }
+}

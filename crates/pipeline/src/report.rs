@@ -1,0 +1,139 @@
+//! `report.html`: one static page, without network or scripts, its pictures linked relatively and loaded as one scrolls.
+//!
+//! The same results give the same bytes: no clock and no absolute path is in it.
+
+use biplane_artifact::Verdict;
+use serde::Serialize;
+
+use crate::outcome::Outcome;
+use crate::study::Study;
+
+/// What the page says beside the results.
+#[derive(Debug, Clone, Serialize)]
+pub struct Provenance {
+    /// Name of a step and its parameters as text.
+    pub parameters: Vec<(String, String)>,
+    /// An input file (with the picture's number, where it has several) and its content hash.
+    pub inputs: Vec<(String, String)>,
+}
+
+/// A page could not be made from the template.
+#[derive(Debug, thiserror::Error)]
+#[error("the report could not be written: {0}")]
+pub struct ReportError(#[from] minijinja::Error);
+
+#[derive(Serialize)]
+struct Row {
+    anchor: usize,
+    frame: String,
+    time: String,
+    body: String,
+    verdict: &'static str,
+    reason: String,
+    fit: Option<[String; 2]>,
+    share: String,
+    sigma: Option<[String; 2]>,
+    start: &'static str,
+}
+
+#[derive(Serialize)]
+struct Card {
+    anchor: usize,
+    frame: String,
+    worst: &'static str,
+    bodies: Vec<(String, &'static str, String)>,
+    pictures: Vec<(String, String)>,
+}
+
+#[derive(Serialize)]
+struct TrialPart {
+    name: String,
+    rows: Vec<Row>,
+    cards: Vec<Card>,
+}
+
+/// The page.
+///
+/// # Errors
+/// The template fails, which is a fault of this program.
+pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<String, ReportError> {
+    let mut environment = minijinja::Environment::new();
+    environment.add_template("report.html", include_str!("report.html"))?;
+    let [good, doubtful, failed] = outcome.verdicts();
+    let trials: Vec<TrialPart> = (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect();
+    Ok(environment.get_template("report.html")?.render(minijinja::context! {
+        name => study.name,
+        version => env!("CARGO_PKG_VERSION"),
+        good, doubtful, failed,
+        frames => outcome.frames.len(),
+        views => study.views.iter().map(|v| v.name.as_str()).collect::<Vec<_>>(),
+        warnings => outcome.warnings,
+        failures => outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect::<Vec<_>>(),
+        trials,
+        provenance,
+    })?)
+}
+
+fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
+    let mut rows = Vec::new();
+    let mut cards = Vec::new();
+    for (anchor, frame) in outcome.frames.iter().enumerate().filter(|(_, f)| f.trial == trial) {
+        let mut worst = Verdict::Good;
+        let mut bodies = Vec::new();
+        for body in &frame.bodies {
+            let name = study.bodies[body.body].name.clone();
+            let verdict = body.verdict();
+            worst = worst.max(verdict);
+            bodies.push((name.clone(), verdict.word(), body.reason()));
+            let found = body.result.as_ref().ok();
+            rows.push(Row {
+                anchor,
+                frame: frame.label.clone(),
+                time: frame.time_s.map_or(String::new(), |t| format!("{t:.3}")),
+                body: name,
+                verdict: verdict.word(),
+                reason: body.reason(),
+                fit: body.fit().map(|[mm, px]| [format!("{mm:.3}"), format!("{px:.2}")]),
+                share: found.map_or(String::new(), |m| {
+                    let shares = m.views.iter().map(|v| format!("{:.0}", 100.0 * v.matched_share));
+                    shares.collect::<Vec<_>>().join(" / ")
+                }),
+                sigma: found.map(|m| {
+                    [
+                        format!("{:.3}", m.translation_sigma_mm()),
+                        format!("{:.3}", m.rotation_sigma_rad().to_degrees()),
+                    ]
+                }),
+                start: body.start.word(),
+            });
+        }
+        let pictures = frame
+            .overlays
+            .iter()
+            .map(|(view, path)| (study.views[*view].name.clone(), url(&crate::diagnostics::slashes(path))))
+            .collect();
+        cards.push(Card { anchor, frame: frame.label.clone(), worst: worst.word(), bodies, pictures });
+    }
+    TrialPart { name: study.trials[trial].name.clone(), rows, cards }
+}
+
+/// A relative path as the address of a link.
+fn url(path: &str) -> String {
+    let mut out = String::with_capacity(path.len());
+    for byte in path.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-_./~".contains(&byte) {
+            out.push(char::from(byte));
+        } else {
+            out.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn odd_names_still_make_a_link() {
+        assert_eq!(super::url("overlays/a b/x#1_é.png"), "overlays/a%20b/x%231_%C3%A9.png");
+    }
+}

@@ -1,0 +1,167 @@
+//! `poses.csv` and the note beside it.
+//!
+//! Units are in the column names and the first line is the header, so that any program reads the table; the frames and
+//! conventions are in `poses.README.txt`. A file is written beside and renamed into place, and left alone if its bytes
+//! would not change.
+
+use std::io::Write;
+use std::path::Path;
+
+use biplane_artifact::PoseRecord;
+use biplane_geometry::Pose;
+
+use crate::outcome::{BodyOutcome, FrameOutcome, Outcome};
+use crate::study::Study;
+
+/// The six coordinates of a small motion, in the order of a covariance's rows, and their units.
+const TWIST: [(&str, &str); 6] =
+    [("tx", "mm"), ("ty", "mm"), ("tz", "mm"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
+
+/// What `poses.README.txt` says.
+pub const README: &str = include_str!("poses_readme.txt");
+
+/// Writes a file beside and renames it into place; `false` if it had these bytes already and was left alone.
+///
+/// # Errors
+/// The operating system refuses.
+pub fn write_if_changed(path: &Path, bytes: &[u8]) -> std::io::Result<bool> {
+    if std::fs::read(path).is_ok_and(|old| old == bytes) {
+        return Ok(false);
+    }
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let mut file = tempfile::Builder::new().prefix(".writing-").tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    #[cfg(unix)]
+    {
+        // Temporary files are private; results are for everyone who may read the folder.
+        use std::os::unix::fs::PermissionsExt;
+        file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644))?;
+    }
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(true)
+}
+
+/// The header of `poses.csv`.
+fn header(views: &[&str]) -> Vec<String> {
+    let mut names: Vec<String> = "trial frame body verdict tx_mm ty_mm tz_mm qw qx qy qz time_s start reason"
+        .split(' ')
+        .map(str::to_owned)
+        .collect();
+    for view in views {
+        names.extend(["rms_px", "rms_mm", "matched_share"].map(|what| format!("{view}_{what}")));
+    }
+    names.extend(["sigma_t_mm".to_owned(), "sigma_r_deg".to_owned()]);
+    for (i, (a, unit_a)) in TWIST.iter().enumerate() {
+        for (b, unit_b) in &TWIST[i..] {
+            let unit = if unit_a == unit_b { format!("{unit_a}2") } else { format!("{unit_a}_{unit_b}") };
+            names.push(format!("cov_{a}_{b}_{unit}"));
+        }
+    }
+    names.push("iterations".to_owned());
+    names
+}
+
+/// A decimal number without the sign that a rounded -0 would keep.
+fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    if text.starts_with('-') && text.bytes().all(|c| b"-0.".contains(&c)) {
+        text[1..].to_owned()
+    } else {
+        text
+    }
+}
+
+fn pose_cells(pose: PoseRecord) -> impl Iterator<Item = String> {
+    let PoseRecord { translation_mm, quaternion_wxyz } = pose;
+    translation_mm.map(|v| fixed(v, 6)).into_iter().chain(quaternion_wxyz.map(|v| fixed(v, 9)))
+}
+
+fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
+    let trial = &study.trials[frame.trial];
+    let mut cells = vec![
+        trial.name.clone(),
+        frame.label.clone(),
+        study.bodies[body.body].name.clone(),
+        body.verdict().word().to_owned(),
+    ];
+    // Where no match could be made, the search ended where it would have started.
+    let pose = body.result.as_ref().map_or_else(|_| PoseRecord::from(body.start_pose), |m| m.pose);
+    cells.extend(pose_cells(pose));
+    cells.push(frame.time_s.map_or(String::new(), |t| fixed(t, 6)));
+    cells.push(body.start.word().to_owned());
+    cells.push(body.reason());
+    let found = body.result.as_ref().ok();
+    for view in 0..study.views.len() {
+        let fit = trial.frames.iter().position(|(v, _)| *v == view).and_then(|i| found?.views.get(i));
+        match fit {
+            Some(f) => cells.extend([fixed(f.rms_px, 4), fixed(f.rms_mm, 5), fixed(f.matched_share, 4)]),
+            None => cells.extend(std::iter::repeat_n(String::new(), 3)),
+        }
+    }
+    match found {
+        Some(m) => {
+            cells.push(fixed(m.translation_sigma_mm(), 6));
+            cells.push(fixed(m.rotation_sigma_rad().to_degrees(), 6));
+            cells.extend((0..6).flat_map(|i| (i..6).map(move |j| format!("{:.6e}", m.covariance[i][j]))));
+            cells.push(m.iterations.to_string());
+        }
+        None => cells.extend(std::iter::repeat_n(String::new(), 2 + 21 + 1)),
+    }
+    cells
+}
+
+/// The bytes of `poses.csv`.
+///
+/// # Errors
+/// Never for a table in memory; the signature is that of the CSV writer.
+pub fn poses_csv(study: &Study, outcome: &Outcome) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let views: Vec<&str> = study.views.iter().map(|v| v.name.as_str()).collect();
+    writer.write_record(header(&views))?;
+    for (frame, body) in outcome.rows() {
+        writer.write_record(row(study, frame, body))?;
+    }
+    writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))
+}
+
+/// The line a person copies into `edits/poses.csv` to start a body in a frame from `pose`.
+pub fn pose_line(trial: &str, frame: &str, body: &str, pose: Pose) -> String {
+    let cells: Vec<String> = pose_cells(pose.into()).collect();
+    format!("{trial},{frame},{body},{}", cells.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_header_starts_with_what_other_programs_need_and_has_21_covariances() {
+        let names = header(&["A", "B"]);
+        assert_eq!(names[..11].join(","), "trial,frame,body,verdict,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz");
+        let covariances: Vec<&String> = names.iter().filter(|n| n.starts_with("cov_")).collect();
+        assert_eq!(covariances.len(), 21);
+        assert_eq!((covariances[0].as_str(), covariances[3].as_str()), ("cov_tx_tx_mm2", "cov_tx_rx_mm_rad"));
+        assert_eq!(covariances[20], "cov_rz_rz_rad2");
+        assert_eq!(names[14..17], ["A_rms_px", "A_rms_mm", "A_matched_share"]);
+    }
+
+    #[test]
+    fn numbers_have_no_negative_zero() {
+        assert_eq!(fixed(-1e-12, 6), "0.000000");
+        assert_eq!(fixed(-0.5, 1), "-0.5");
+    }
+
+    #[test]
+    fn unchanged_bytes_leave_a_file_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/poses.csv");
+        assert!(write_if_changed(&path, b"a").unwrap());
+        let before = std::fs::metadata(&path).unwrap().modified().unwrap();
+        assert!(!write_if_changed(&path, b"a").unwrap());
+        assert_eq!(std::fs::metadata(&path).unwrap().modified().unwrap(), before);
+        assert!(write_if_changed(&path, b"b").unwrap());
+        assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "no temporary file stays");
+    }
+}
