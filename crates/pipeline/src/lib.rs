@@ -6,5 +6,7 @@ pub mod outcome;
 pub mod reference;
 pub mod report;
 pub mod results;
+pub mod sources;
+pub mod starts;
 pub mod study;
 pub mod tables;

@@ -69,8 +69,8 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
         views => study.views.iter().map(|v| v.name.as_str()).collect::<Vec<_>>(),
         warnings => outcome.warnings,
         failures => outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect::<Vec<_>>(),
-        trials,
-        provenance,
+        trials => minijinja::Value::from_serialize(trials),
+        provenance => minijinja::Value::from_serialize(provenance),
     })?)
 }
 

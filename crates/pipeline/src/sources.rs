@@ -1,0 +1,264 @@
+//! The index of input files: what they hold, known without reading them again.
+//!
+//! A file whose size and time of change are those of the last look has the content it had then: a run in which nothing
+//! is to do opens no picture. `.biplane/inputs.json` holds, for each file (and picture in it) and reader setting, the
+//! content hash and a few facts. It is dropped whole when the readers' code changes. A file changed less than
+//! [`SETTLED`] before it was read could change again without its time changing (coarse clocks), so it is not trusted yet.
+//!
+//! A wrong entry cannot make a wrong result: before a stage runs, the store holds what was read against the hash.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
+
+use biplane_artifact::{Content, ContentHash, Frame, ModelMesh};
+use biplane_stage::Promise;
+use serde::{Deserialize, Serialize};
+
+use crate::diagnostics::slashes;
+use crate::results::write_if_changed;
+
+/// Raised when the layout of the index changes.
+const FORMAT: u32 = 1;
+/// The code of the readers, and of everything else that decides what a file means.
+const CODE: &str = env!("BIPLANE_CODE_HASH");
+/// A file must have been left alone this long before its time of change is trusted (FAT counts in 2 s).
+const SETTLED: Duration = Duration::from_secs(2);
+
+/// What is known of one picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrameFacts {
+    hash: ContentHash,
+    /// Columns and rows.
+    pub size: [usize; 2],
+}
+
+impl FrameFacts {
+    fn of(frame: &Frame) -> Self {
+        Self { hash: frame.content_hash(), size: [frame.width, frame.height] }
+    }
+
+    /// The hash, for keys.
+    pub fn promise(&self) -> Promise<Frame> {
+        Promise::new(self.hash)
+    }
+
+    /// The hash, for the report.
+    pub fn hash(&self) -> ContentHash {
+        self.hash
+    }
+}
+
+/// What is known of one mesh.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeshFacts {
+    hash: ContentHash,
+    /// Area centroid in model coordinates, mm.
+    pub centroid: [f64; 3],
+    /// What the reader found worth saying.
+    pub notes: Vec<String>,
+}
+
+impl MeshFacts {
+    fn of(mesh: &ModelMesh, notes: Vec<String>) -> Self {
+        let c = mesh.0.area_centroid();
+        Self { hash: mesh.content_hash(), centroid: [c.x, c.y, c.z], notes }
+    }
+
+    /// The hash, for keys.
+    pub fn promise(&self) -> Promise<ModelMesh> {
+        Promise::new(self.hash)
+    }
+
+    /// The hash, for the report.
+    pub fn hash(&self) -> ContentHash {
+        self.hash
+    }
+}
+
+/// A file as it was when it was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Known<F> {
+    bytes: u64,
+    modified_ns: u64,
+    settled: bool,
+    facts: F,
+}
+
+type Table<F> = BTreeMap<String, Known<F>>;
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Tables {
+    format: u32,
+    code: String,
+    frames: Table<FrameFacts>,
+    meshes: Table<MeshFacts>,
+}
+
+/// The index of one study; many threads may ask it at once.
+#[derive(Debug)]
+pub struct InputIndex {
+    root: PathBuf,
+    file: PathBuf,
+    old: Tables,
+    new: Mutex<Tables>,
+}
+
+impl InputIndex {
+    /// Reads the index in `hidden` (the study's `.biplane`). One that is damaged, of another program or not there is
+    /// empty: that costs time only.
+    pub fn open(root: &Path, hidden: &Path) -> Self {
+        let file = hidden.join("inputs.json");
+        let old = std::fs::read(&file)
+            .ok()
+            .and_then(|bytes| serde_json::from_slice::<Tables>(&bytes).ok())
+            .filter(|t| t.format == FORMAT && t.code == CODE)
+            .unwrap_or_default();
+        Self { root: root.to_owned(), file, old, new: Mutex::default() }
+    }
+
+    /// What is known of picture `index` of a file; reads it if it may have changed.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn frame<E>(
+        &self,
+        path: &Path,
+        index: usize,
+        read: impl FnOnce() -> Result<Frame, E>,
+    ) -> Result<FrameFacts, E> {
+        let key = format!("{}#{index}", self.relative(path));
+        self.known(&key, path, &self.old.frames, |t| &mut t.frames, || read().map(|f| FrameFacts::of(&f)))
+    }
+
+    /// What is known of a mesh read in `unit`; reads it if it may have changed. `read` also gives notes.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn mesh<E>(
+        &self,
+        path: &Path,
+        unit: &str,
+        read: impl FnOnce() -> Result<(ModelMesh, Vec<String>), E>,
+    ) -> Result<MeshFacts, E> {
+        let key = format!("{} in {unit}", self.relative(path));
+        self.known(
+            &key,
+            path,
+            &self.old.meshes,
+            |t| &mut t.meshes,
+            || read().map(|(mesh, notes)| MeshFacts::of(&mesh, notes)),
+        )
+    }
+
+    fn known<F: Clone, E>(
+        &self,
+        key: &str,
+        path: &Path,
+        old: &Table<F>,
+        table: fn(&mut Tables) -> &mut Table<F>,
+        make: impl FnOnce() -> Result<F, E>,
+    ) -> Result<F, E> {
+        // Looked at before reading: a change during it makes the next run read again.
+        let look = look(path);
+        let entry = match (old.get(key), look) {
+            (Some(known), Some((bytes, modified_ns, _)))
+                if known.settled && (known.bytes, known.modified_ns) == (bytes, modified_ns) =>
+            {
+                known.clone()
+            }
+            (_, Some((bytes, modified_ns, settled))) => Known { bytes, modified_ns, settled, facts: make()? },
+            (_, None) => return make(),
+        };
+        let facts = entry.facts.clone();
+        table(&mut self.new.lock().unwrap_or_else(PoisonError::into_inner)).insert(key.to_owned(), entry);
+        Ok(facts)
+    }
+
+    /// Writes the index. What was not asked for in this run is kept unless the run was a `whole` one.
+    ///
+    /// # Errors
+    /// The operating system refuses.
+    pub fn save(self, whole: bool) -> std::io::Result<()> {
+        let Self { old, new, file, .. } = self;
+        let mut tables = new.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if !whole {
+            for (key, known) in old.frames {
+                tables.frames.entry(key).or_insert(known);
+            }
+            for (key, known) in old.meshes {
+                tables.meshes.entry(key).or_insert(known);
+            }
+        }
+        tables.format = FORMAT;
+        tables.code = CODE.to_owned();
+        let mut bytes = serde_json::to_vec_pretty(&tables)?;
+        bytes.push(b'\n');
+        write_if_changed(&file, &bytes).map(|_| ())
+    }
+
+    fn relative(&self, path: &Path) -> String {
+        slashes(path.strip_prefix(&self.root).unwrap_or(path))
+    }
+}
+
+/// Size, time of change (ns since 1970) and whether that time lies far enough back; `None` if the system cannot say.
+fn look(path: &Path) -> Option<(u64, u64, bool)> {
+    let about = std::fs::metadata(path).ok()?;
+    let modified = about.modified().ok()?;
+    let ns = modified.duration_since(SystemTime::UNIX_EPOCH).ok()?.as_nanos();
+    let settled = SystemTime::now().duration_since(modified).is_ok_and(|age| age >= SETTLED);
+    Some((about.len(), u64::try_from(ns).ok()?, settled))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    fn frame(level: u16) -> Frame {
+        Frame { width: 2, height: 1, samples: vec![level, 0], bits: 8 }
+    }
+
+    fn put(path: &Path, text: &str, seconds_ago: u64) {
+        std::fs::write(path, text).unwrap();
+        let file = std::fs::File::options().write(true).open(path).unwrap();
+        file.set_modified(SystemTime::now() - Duration::from_secs(seconds_ago)).unwrap();
+    }
+
+    #[test]
+    fn an_unchanged_file_is_not_read_and_a_changed_one_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, path) = (folder.path(), folder.path().join("a.png"));
+        let hidden = root.join(".biplane");
+        let ask = |level: Option<u16>| {
+            let index = InputIndex::open(root, &hidden);
+            let read = || level.map(frame).ok_or("read");
+            let facts = index.frame(&path, 0, read);
+            index.save(true).unwrap();
+            facts
+        };
+        put(&path, "x", 60);
+        let first = ask(Some(7)).unwrap();
+        assert_eq!(ask(None), Ok(first.clone()), "unchanged: not read");
+        put(&path, "xy", 50);
+        assert_eq!(ask(None), Err("read"), "another size and time");
+        assert_ne!(ask(Some(8)).unwrap(), first);
+        put(&path, "yx", 0);
+        ask(Some(9)).unwrap();
+        assert_eq!(ask(None), Err("read"), "changed a moment ago: not trusted yet");
+    }
+
+    #[test]
+    fn a_damaged_index_is_no_index() {
+        let folder = tempfile::tempdir().unwrap();
+        let hidden = folder.path().join(".biplane");
+        std::fs::create_dir_all(&hidden).unwrap();
+        std::fs::write(hidden.join("inputs.json"), "{").unwrap();
+        let index = InputIndex::open(folder.path(), &hidden);
+        let path = folder.path().join("gone.png");
+        assert_eq!(index.frame(&path, 3, || Ok::<_, Infallible>(frame(1))).unwrap().size, [2, 1]);
+        index.save(false).unwrap();
+    }
+}
