@@ -38,9 +38,9 @@ struct Segment {
     back: i32,
 }
 
-/// How far beside the rim one looks whether a face covers the picture, px: far above rounding (1e-10 px), far below
-/// what can be seen.
-const BESIDE_PX: f64 = 1e-4;
+/// How far beside the rim one looks whether a face covers the picture, px: above the rounding of a crossing (1e-12 px).
+/// At 1e-4 px a face seen almost edge-on had both of its sides taken for outline, in one pose of ten.
+const BESIDE_PX: f64 = 1e-8;
 /// Rows of bins at most: a body larger than any picture gets coarser bins.
 const MAX_BINS: usize = 4096;
 
@@ -368,7 +368,7 @@ mod tests {
     /// Area by Green's theorem from the outline against a count of covered pixels, at many poses.
     #[test]
     fn area_agrees_with_a_rasterised_shadow() {
-        let mesh = ball(24, |k| k % 61 == 0);
+        let mesh = ball(24, |k| k % 5 == 0);
         let rim = RimMesh::new(&mesh);
         let view = view(false);
         let mut outline = Outline::new();
