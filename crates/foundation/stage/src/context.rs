@@ -143,3 +143,65 @@ impl Drop for Ticket<'_> {
         self.shared.changed.notify_all();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Barrier;
+    use std::sync::atomic::AtomicUsize;
+
+    fn hash(n: u8) -> ContentHash {
+        ContentHash::from_bytes([n; 32])
+    }
+
+    #[test]
+    fn one_item_builds_while_the_others_wait() {
+        let (context, built, start) = (Context::new(), AtomicUsize::new(0), Barrier::new(8));
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    start.wait();
+                    let value = context.prepared(hash(1), || {
+                        std::thread::sleep(Duration::from_millis(30));
+                        built.fetch_add(1, Ordering::Relaxed)
+                    });
+                    assert_eq!(*value, 0);
+                });
+            }
+        });
+        assert_eq!(built.load(Ordering::Relaxed), 1);
+    }
+
+    #[test]
+    fn hashes_and_types_are_kept_apart() {
+        let context = Context::new();
+        assert_eq!(*context.prepared(hash(1), || 1_u32), 1);
+        assert_eq!(*context.prepared(hash(2), || 2_u32), 2);
+        assert_eq!(*context.prepared(hash(1), || "text"), "text");
+        assert_eq!(*context.clone().prepared(hash(1), || 9_u32), 1);
+    }
+
+    #[test]
+    fn building_within_building_does_not_wait_for_itself() {
+        let context = Context::new();
+        let outer = context.prepared(hash(1), || {
+            // What a thread pool does when it hands an item to a thread that waits for its own parallel loop.
+            let same = context.prepared(hash(1), || 5_u32);
+            let other = context.prepared(hash(2), || 7_u32);
+            *same + *other
+        });
+        assert_eq!(*outer, 12);
+        assert_eq!(*context.prepared(hash(1), || 0_u32), 12);
+        assert_eq!(*context.prepared(hash(2), || 0_u32), 7);
+    }
+
+    #[test]
+    fn a_panic_while_building_frees_the_place() {
+        let context = Context::new();
+        let failed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            context.prepared(hash(1), || -> u32 { panic!("on purpose") })
+        }));
+        assert!(failed.is_err());
+        assert_eq!(*context.prepared(hash(1), || 3_u32), 3);
+    }
+}

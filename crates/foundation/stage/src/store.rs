@@ -177,12 +177,23 @@ pub enum How {
 }
 
 /// What [`Store::execute`] gives.
-#[derive(Debug, Clone)]
 pub struct Outcome<A> {
     /// Whether the stage ran.
     pub how: How,
     /// The entry.
     pub output: Stored<A>,
+}
+
+impl<A> Clone for Outcome<A> {
+    fn clone(&self) -> Self {
+        Self { how: self.how.clone(), output: self.output.clone() }
+    }
+}
+
+impl<A> fmt::Debug for Outcome<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Outcome").field("how", &self.how).field("output", &self.output).finish()
+    }
 }
 
 /// Why an item has no output. `S` is the stage's error, `L` that of loading its inputs.
@@ -426,9 +437,11 @@ impl Store {
             path: path.to_path_buf(),
         };
         let parent = path.parent().unwrap_or(&self.dir);
+        // A link that leads to a folder is not one itself.
+        let is_folder = |p: &Path| p.symlink_metadata().is_ok_and(|about| about.is_dir());
         let in_the_way = || {
-            let above = path.ancestors().skip(1).take(item.parts().len());
-            above.into_iter().find(|p| link::read(p).is_some()).or_else(|| path.is_dir().then_some(&path))
+            let mut above = path.ancestors().skip(1).take(item.parts().len());
+            above.find(|p| link::read(p).is_some()).or_else(|| is_folder(&path).then_some(&path))
         };
         let placed = match in_the_way() {
             Some(other) => Err(clash(other)),
