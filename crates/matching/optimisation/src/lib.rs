@@ -1,1 +1,27 @@
-//! placeholder
+//! From edge curves and a start pose to the pose of a body, how well it fits, and how sure it is.
+//!
+//! **Objective.** Each point of the model's visible outline looks for the nearest edge point that runs in the same
+//! direction and has the body's contrast, within a search radius that shrinks as the match goes on; its residual is the
+//! distance along the outline's normal, weighed robustly (Geman and McClure). Model to image, as the thesis's Eqs. 3.4 to
+//! 3.6, but with direction, contrast and robust weights, so that a part of the outline that the image does not show does
+//! not pull the pose away.
+//!
+//! **Optimiser.** Levenberg-Marquardt on the rotation group: the pose moves by a twist about the body's centroid, and a
+//! rim point held fixed to the body has the same normal speed as the contour, so each residual's derivative is one exact
+//! row of six.
+//!
+//! **Starts.** The start given; where its match does not come out good, further ones around it, drawn from a seed.
+//!
+//! **Guaranteed:** a result depends on inputs and parameters alone. **Not guaranteed:** that the best basin was found; the
+//! verdict says what speaks against a pose, from the fit alone.
+
+mod field;
+mod judge;
+mod refine;
+mod stage;
+mod starts;
+
+pub use field::EdgeField;
+pub use judge::{Limits, judge};
+pub use refine::{Refined, RefineParams, View, refine};
+pub use stage::{MatchBody, MatchError, MatchInputs, MatchParams, match_body};

@@ -1,0 +1,144 @@
+//! The edge points of one view, sorted into cells, to find the nearest one that runs in a wanted direction.
+
+use biplane_artifact::Curves;
+use biplane_fluoroscope::Distortion;
+use biplane_geometry::{EdgePoint, Point2, Vector2};
+
+/// Side of a cell, px.
+const CELL_PX: f64 = 8.0;
+/// Cells along x or y at most: edge points far outside any picture fall into the last cell.
+const MAX_CELLS: f64 = 2048.0;
+
+/// Edge points of one view in ideal pixels.
+#[derive(Debug, Clone)]
+pub struct EdgeField {
+    points: Vec<EdgePoint>,
+    cell_start: Vec<u32>,
+    first: Point2,
+    cells: [usize; 2],
+}
+
+impl EdgeField {
+    /// From the curves of a frame, corrected for distortion if there is any.
+    pub fn new(curves: &Curves, distortion: Option<&Distortion>) -> Self {
+        let mut points = Vec::with_capacity(curves.point_count());
+        for curve in &curves.0 {
+            match distortion {
+                Some(d) => points.extend(d.correct(curve).points),
+                None => points.extend_from_slice(&curve.points),
+            }
+        }
+        points.retain(|p| p.position.coords.iter().chain(p.direction.iter()).all(|v| v.is_finite()));
+        let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
+        for p in &points {
+            low = low.inf(&p.position.coords);
+            high = high.sup(&p.position.coords);
+        }
+        if points.is_empty() {
+            (low, high) = (Vector2::zeros(), Vector2::zeros());
+        }
+        let count = |span: f64| (span / CELL_PX + 1.0).clamp(1.0, MAX_CELLS) as usize;
+        let mut field = Self {
+            points: Vec::new(),
+            cell_start: Vec::new(),
+            first: Point2::from(low),
+            cells: [count(high.x - low.x), count(high.y - low.y)],
+        };
+        let total = field.cells[0] * field.cells[1];
+        let index: Vec<usize> = points.iter().map(|p| field.cell_index(&p.position)).collect();
+        field.cell_start = vec![0; total + 1];
+        for &i in &index {
+            field.cell_start[i + 1] += 1;
+        }
+        for i in 0..total {
+            field.cell_start[i + 1] += field.cell_start[i];
+        }
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by_key(|&k| index[k]);
+        field.points = order.into_iter().map(|k| points[k]).collect();
+        field
+    }
+
+    fn cell(&self, p: &Point2, axis: usize) -> usize {
+        (((p[axis] - self.first[axis]) / CELL_PX).max(0.0) as usize).min(self.cells[axis] - 1)
+    }
+
+    fn cell_index(&self, p: &Point2) -> usize {
+        self.cell(p, 1) * self.cells[0] + self.cell(p, 0)
+    }
+
+    /// The nearest edge point within `radius` px whose direction has at least `min_cosine` with `direction` (unit, dark
+    /// to bright).
+    pub fn nearest(&self, at: &Point2, direction: &Vector2, radius: f64, min_cosine: f64) -> Option<&EdgePoint> {
+        let mut best: Option<&EdgePoint> = None;
+        let mut best_squared = radius * radius;
+        let (cx, cy) = (self.cell(at, 0) as isize, self.cell(at, 1) as isize);
+        let rings = (radius / CELL_PX).ceil() as isize;
+        // Rings of cells around the one of `at`; a ring `k` away holds nothing nearer than `k - 1` cells.
+        for ring in 0..=rings {
+            let nearest_possible = (ring - 1).max(0) as f64 * CELL_PX;
+            if nearest_possible * nearest_possible > best_squared {
+                break;
+            }
+            for y in (cy - ring).max(0)..=(cy + ring).min(self.cells[1] as isize - 1) {
+                let whole_row = (y - cy).abs() == ring;
+                let step = if whole_row || ring == 0 { 1 } else { 2 * ring };
+                let mut x = cx - ring;
+                while x <= cx + ring {
+                    if x >= 0 && x < self.cells[0] as isize {
+                        let cell = y as usize * self.cells[0] + x as usize;
+                        let span = self.cell_start[cell] as usize..self.cell_start[cell + 1] as usize;
+                        for p in &self.points[span] {
+                            let d = (p.position - at).norm_squared();
+                            if d < best_squared && p.direction.dot(direction) >= min_cosine {
+                                best_squared = d;
+                                best = Some(p);
+                            }
+                        }
+                    }
+                    x += step;
+                }
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use biplane_geometry::Curve;
+    use rand::{Rng, SeedableRng};
+
+    #[test]
+    fn finds_what_a_search_through_all_points_finds() {
+        let mut random = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(3);
+        let points: Vec<EdgePoint> = (0..800)
+            .map(|_| {
+                let a: f64 = random.random_range(0.0..std::f64::consts::TAU);
+                EdgePoint {
+                    position: Point2::new(random.random_range(100.0..400.0), random.random_range(-50.0..300.0)),
+                    direction: Vector2::new(a.cos(), a.sin()),
+                    strength: 1.0,
+                    sigma_px: 0.1,
+                }
+            })
+            .collect();
+        let field = EdgeField::new(&Curves(vec![Curve { points: points.clone(), closed: false }]), None);
+        let mut found = 0;
+        for _ in 0..2000 {
+            let at = Point2::new(random.random_range(60.0..440.0), random.random_range(-90.0..340.0));
+            let direction = Vector2::new(0.6, -0.8);
+            let radius = random.random_range(1.0..60.0);
+            let expected = points
+                .iter()
+                .filter(|p| p.direction.dot(&direction) >= 0.8 && (p.position - at).norm() < radius)
+                .min_by(|a, b| (a.position - at).norm().total_cmp(&(b.position - at).norm()));
+            assert_eq!(field.nearest(&at, &direction, radius, 0.8), expected);
+            found += usize::from(expected.is_some());
+        }
+        assert!(found > 500);
+        let empty = EdgeField::new(&Curves::default(), None);
+        assert!(empty.nearest(&Point2::origin(), &Vector2::x(), 50.0, 0.0).is_none());
+    }
+}

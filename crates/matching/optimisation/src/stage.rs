@@ -1,0 +1,254 @@
+//! The stage `match`: the curves of a frame's views, their calibrations, a body's mesh and a start in; its pose out.
+
+use biplane_artifact::{Calibration, Curves, Match, ModelMesh, Start};
+use biplane_fluoroscope::Fluoroscope;
+use biplane_geometry::Pose;
+use biplane_outline::RimMesh;
+use biplane_stage::{Context, Stage, inputs};
+use nalgebra::Matrix6;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{EdgeField, Limits, RefineParams, Refined, View, judge, refine, starts};
+
+inputs! {
+    /// One body in one frame, seen in any number of views.
+    pub struct MatchInputs {
+        /// One a view.
+        curves: [Curves],
+        /// One a view, in the same order.
+        calibrations: [Calibration],
+        /// The body.
+        model: ModelMesh,
+        /// Where to start.
+        start: Start,
+    }
+}
+
+/// Whether a body is darker or brighter than what surrounds it in the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Contrast {
+    /// As X-rays make bone and metal where larger grey levels mean more radiation.
+    Dark,
+    /// The other way round.
+    Bright,
+}
+
+/// How poses are searched and judged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct MatchParams {
+    /// How far from its start an outline looks for edges, px. As far as starts are wrong, and no farther.
+    #[schemars(range(min = 1.0, max = 500.0))]
+    pub search_px: f64,
+    /// How far from the outline an edge may lie at the end to count as found, px.
+    #[schemars(range(min = 0.5, max = 50.0))]
+    pub final_search_px: f64,
+    /// `"dark"`, or `"bright"` if bodies are brighter than their surroundings.
+    pub contrast: Contrast,
+    /// Further starts around the given one, tried while no match is good.
+    #[schemars(range(max = 1000))]
+    pub retries: usize,
+    /// Standard deviation of the further starts, mm.
+    pub retry_mm: f64,
+    /// Standard deviation of the further starts, degrees.
+    pub retry_deg: f64,
+    /// Seed of the further starts.
+    pub seed: u64,
+    /// A pose is good if at least this share of its outline finds an edge in each view.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub good_share: f64,
+    /// It has failed if less than this share does in any view.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub failed_share: f64,
+    /// A pose is good if its root mean square residual is at most this in each view, px.
+    pub good_rms_px: f64,
+    /// It has failed above this in any view, px.
+    pub failed_rms_px: f64,
+    /// A pose is good if its centroid is known to this, mm (1 sigma).
+    pub good_sigma_mm: f64,
+    /// and its rotation to this, degrees (1 sigma).
+    pub good_sigma_deg: f64,
+}
+
+impl Default for MatchParams {
+    fn default() -> Self {
+        Self {
+            search_px: 40.0,
+            final_search_px: 3.0,
+            contrast: Contrast::Dark,
+            retries: 12,
+            retry_mm: 4.0,
+            retry_deg: 4.0,
+            seed: 1,
+            good_share: 0.7,
+            failed_share: 0.5,
+            good_rms_px: 1.0,
+            failed_rms_px: 2.0,
+            good_sigma_mm: 0.5,
+            good_sigma_deg: 0.5,
+        }
+    }
+}
+
+/// Why a match could not be tried. (A match that was tried and failed is a [`Match`] with that verdict.)
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MatchError {
+    /// A parameter out of range.
+    #[error("[match] {name} = {value}, expected {expected}")]
+    Parameter {
+        /// The key in pipeline.toml.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// Curves and calibrations are not one a view.
+    #[error("{curves} views with curves but {calibrations} calibrations: expected one of each a view, and at least one")]
+    Views {
+        /// Sets of curves.
+        curves: usize,
+        /// Calibrations.
+        calibrations: usize,
+    },
+    /// The run was stopped.
+    #[error("stopped")]
+    Cancelled,
+}
+
+impl MatchParams {
+    /// # Errors
+    /// Names the first parameter that is out of its range.
+    pub fn check(&self) -> Result<(), MatchError> {
+        let Self {
+            search_px,
+            final_search_px,
+            contrast: _,
+            retries,
+            retry_mm,
+            retry_deg,
+            seed: _,
+            good_share,
+            failed_share,
+            good_rms_px,
+            failed_rms_px,
+            good_sigma_mm,
+            good_sigma_deg,
+        } = *self;
+        let within = |name, value: f64, low: f64, high: f64, expected| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(MatchError::Parameter { name, value, expected })
+            }
+        };
+        let any = f64::MAX;
+        within("search_px", search_px, 1.0, 500.0, "1 to 500 px")?;
+        within("final_search_px", final_search_px, 0.5, 50.0, "0.5 to 50 px")?;
+        within("retries", retries as f64, 0.0, 1000.0, "0 to 1000")?;
+        within("retry_mm", retry_mm, 0.0, 1000.0, "0 to 1000 mm")?;
+        within("retry_deg", retry_deg, 0.0, 180.0, "0 to 180 degrees")?;
+        within("good_share", good_share, 0.0, 1.0, "0 to 1")?;
+        within("failed_share", failed_share, 0.0, good_share, "0 to good_share")?;
+        within("good_rms_px", good_rms_px, 0.0, any, "0 or more px")?;
+        within("failed_rms_px", failed_rms_px, good_rms_px, any, "at least good_rms_px")?;
+        within("good_sigma_mm", good_sigma_mm, 0.0, any, "0 or more mm")?;
+        within("good_sigma_deg", good_sigma_deg, 0.0, any, "0 or more degrees")
+    }
+
+    fn limits(&self) -> Limits {
+        Limits {
+            matched_share: (self.good_share, self.failed_share),
+            rms_px: (self.good_rms_px, self.failed_rms_px),
+            sigma: (self.good_sigma_mm, self.good_sigma_deg.to_radians()),
+        }
+    }
+}
+
+/// Matches one body, seen in `views` named `names`, from `start`.
+///
+/// # Errors
+/// Only [`MatchError::Cancelled`], when `cancelled` says so between two starts.
+pub fn match_body(
+    mesh: &RimMesh,
+    views: &[View],
+    names: &[String],
+    start: &Pose,
+    params: &MatchParams,
+    cancelled: impl Fn() -> bool,
+) -> Result<Match, MatchError> {
+    let search = RefineParams {
+        search_px: params.search_px,
+        final_search_px: params.final_search_px,
+        contrast: match params.contrast {
+            Contrast::Dark => 1.0,
+            Contrast::Bright => -1.0,
+        },
+    };
+    let limits = params.limits();
+    let sigma_rad = params.retry_deg.to_radians();
+    let others =
+        starts::around(start, mesh.centroid(), params.retry_mm, sigma_rad, params.seed, params.retries);
+    let mut best: Option<Refined> = None;
+    let mut steps = 0;
+    for from in std::iter::once(*start).chain(others) {
+        if cancelled() {
+            return Err(MatchError::Cancelled);
+        }
+        let refined = refine(mesh, views, &from, &search);
+        steps += refined.steps;
+        if best.as_ref().is_none_or(|b| refined.score() > b.score()) {
+            best = Some(refined);
+        }
+        if best.as_ref().is_some_and(|b| judge(b, names, &limits).1 == biplane_artifact::Verdict::Good) {
+            break;
+        }
+    }
+    let Some(best) = best else { return Err(MatchError::Cancelled) };
+    let (fits, verdict, reason) = judge(&best, names, &limits);
+    let covariance = best.covariance.unwrap_or_else(|| Matrix6::from_element(f64::MAX));
+    Ok(Match {
+        pose: best.pose.into(),
+        verdict,
+        reason,
+        views: fits,
+        covariance: std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)])),
+        iterations: steps,
+    })
+}
+
+/// The stage `match`.
+#[derive(Debug, Clone, Copy)]
+pub struct MatchBody;
+
+impl Stage for MatchBody {
+    const NAME: &'static str = "match";
+    const CODE: &'static str = env!("BIPLANE_CODE_HASH");
+    type Inputs = MatchInputs;
+    type Params = MatchParams;
+    type Output = Match;
+    type Error = MatchError;
+
+    fn run(inputs: &MatchInputs, params: &MatchParams, context: &Context) -> Result<Match, MatchError> {
+        params.check()?;
+        let (curves, calibrations) = (inputs.curves.len(), inputs.calibrations.len());
+        if curves != calibrations || curves == 0 {
+            return Err(MatchError::Views { curves, calibrations });
+        }
+        let mesh = context.prepared(inputs.model.hash(), || RimMesh::new(&inputs.model.0));
+        let views: Vec<View> = inputs
+            .curves
+            .iter()
+            .zip(&inputs.calibrations)
+            .map(|(curves, calibration)| {
+                let fluoroscope = Fluoroscope::from(&**calibration);
+                View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
+            })
+            .collect();
+        // Views have numbers here; their names belong to the study.
+        let names: Vec<String> = (1..=views.len()).map(|n| n.to_string()).collect();
+        match_body(&mesh, &views, &names, &inputs.start.0, params, || context.cancelled())
+    }
+}
