@@ -119,8 +119,13 @@ struct Code {
 
 impl Code {
     fn add(&mut self, name: String, path: PathBuf) -> Result<(), CodeHashError> {
-        self.files.insert(name, fs::read(&path).map_err(|e| failed(&path, e))?);
+        self.read(name, &path)?;
         self.watched.insert(path);
+        Ok(())
+    }
+
+    fn read(&mut self, name: String, path: &Path) -> Result<(), CodeHashError> {
+        self.files.insert(name, fs::read(path).map_err(|e| failed(path, e))?);
         Ok(())
     }
 
@@ -147,21 +152,22 @@ impl Code {
             self.add(format!("{name} {script}"), script_path)?;
         }
         let source = dir.join("src");
-        self.watched.insert(source.clone());
-        self.add_folder(&format!("{name} src"), &source)?;
+        self.read_folder(&format!("{name} src"), &source)?;
+        // Cargo watches everything below a folder.
+        self.watched.insert(source);
         Ok(path_dependencies(&manifest).filter_map(|d| d.folder(dir, shared)).collect())
     }
 
-    fn add_folder(&mut self, name: &str, dir: &Path) -> Result<(), CodeHashError> {
+    fn read_folder(&mut self, name: &str, dir: &Path) -> Result<(), CodeHashError> {
         for entry in fs::read_dir(dir).map_err(|e| failed(dir, e))? {
             let entry = entry.map_err(|e| failed(dir, e))?;
             let path = entry.path();
             let within = format!("{name}/{}", entry.file_name().to_string_lossy());
             let kind = entry.file_type().map_err(|e| failed(&path, e))?;
             if kind.is_dir() {
-                self.add_folder(&within, &path)?;
+                self.read_folder(&within, &path)?;
             } else if path.is_file() {
-                self.add(within, path)?;
+                self.read(within, &path)?;
             }
         }
         Ok(())
@@ -358,5 +364,15 @@ mod tests {
             assert!(code.watched.iter().any(|p| p.ends_with(path)), "{path} in {:?}", code.watched);
         }
         assert!(!code.watched.iter().any(|p| p.ends_with("phantom/src")));
+    }
+
+    #[test]
+    fn this_workspace_is_understood() {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let code = CodeHash::of(&here.join("../stage")).unwrap();
+        for path in ["stage/src", "artifact/src", "geometry/src", "artifact/Cargo.toml", "Cargo.lock"] {
+            assert!(code.watched.iter().any(|p| p.ends_with(path)), "{path} in {:?}", code.watched);
+        }
+        assert_ne!(code.hex, CodeHash::of(&here.join("../geometry")).unwrap().hex);
     }
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 use biplane_artifact::ContentHash;
 
 /// How long one item waits for what another prepares before it prepares its own; see [`Context::prepared`].
-const PATIENCE: Duration = Duration::from_secs(10);
+const PATIENCE: Duration = if cfg!(test) { Duration::from_millis(500) } else { Duration::from_secs(10) };
 
 type MemoKey = (ContentHash, TypeId);
 
@@ -193,6 +193,23 @@ mod tests {
         assert_eq!(*outer, 12);
         assert_eq!(*context.prepared(hash(1), || 0_u32), 12);
         assert_eq!(*context.prepared(hash(2), || 0_u32), 7);
+    }
+
+    #[test]
+    fn a_builder_that_depends_on_one_who_waits_for_it_ends() {
+        let (context, started) = (Context::new(), Barrier::new(2));
+        std::thread::scope(|scope| {
+            // A thread pool may give a part of a builder's parallel loop to a thread that then takes up another item.
+            let waiting = scope.spawn(|| {
+                started.wait();
+                *context.prepared(hash(1), || 5_u32)
+            });
+            let built = context.prepared(hash(1), || {
+                started.wait();
+                waiting.join().unwrap()
+            });
+            assert_eq!(*built, 5);
+        });
     }
 
     #[test]

@@ -10,7 +10,8 @@ const LONGEST: usize = 120;
 
 /// Which item of a step: its parts, such as trial, frame and body. A step that does not map has the item of no parts.
 ///
-/// Items of one step have the same number of parts: `lunge` and `lunge/0017` cannot both be a name in `steps/`.
+/// Items of one step have the same number of parts: `lunge` and `lunge/0017` cannot both be a name in `steps/`. On a file
+/// system that ignores case, items that differ in case alone share a link there; their entries stay apart.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Item(Vec<String>);
 
@@ -51,8 +52,6 @@ pub(crate) fn relative_path(step: &str, item: &Item) -> PathBuf {
 
 /// A file name for any text, different for different texts: letters, digits, `-`, `_` and inner dots stay, every other
 /// character becomes its bytes as `%2F`. A name that gets too long keeps its beginning and ends in `%~` and a hash.
-///
-/// On a file system that ignores case, names that differ in case alone share a link; their entries stay apart.
 fn file_name(text: &str) -> String {
     let mut name = String::new();
     let last = text.chars().count().saturating_sub(1);

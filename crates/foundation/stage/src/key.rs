@@ -79,6 +79,7 @@ impl ParamsText {
     }
 
     pub(crate) fn value(&self) -> Value {
+        // The text was written from a value, so it always reads.
         serde_json::from_str(&self.0).unwrap_or_default()
     }
 }

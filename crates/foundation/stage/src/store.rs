@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use biplane_artifact::{Artifact, ContentHash, ContentHasher};
+use biplane_artifact::{Artifact, ContentHash, ContentHasher, DecodeError};
 
 use crate::input::{Hashed, Promise};
 use crate::item::relative_path;
@@ -60,6 +60,9 @@ pub enum StoreError {
         /// What is there.
         path: PathBuf,
     },
+    /// An artifact cannot be read from the file it writes, for instance because a number is not finite.
+    #[error("the stage's output cannot be read back from its own file, so it was not kept: {0}")]
+    DoesNotReadBack(#[source] DecodeError),
     /// The artifact's [`content_hash`](biplane_artifact::Content::content_hash) is not the hash of its file.
     #[error("the content hash of a {kind} is not that of its file's bytes: an error of the program")]
     HashOfAnotherFile {
@@ -74,7 +77,10 @@ impl StoreError {
     }
 }
 
-/// An entry is not what was written: take it away with [`Store::discard`] and make it again.
+/// An entry is not what was written.
+///
+/// What a lookup can see, [`Store::execute`] mends by itself. What shows only when an output is loaded, inside the `load`
+/// of a step that follows, comes out as the error of that step: [`Store::discard`] the entry and execute its step again.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("entry {key} is damaged: {what}")]
 pub struct Damaged {
@@ -363,7 +369,9 @@ impl Store {
         let key = parts.key();
         let bytes = value.encode();
         let hash = hash_of_file::<A>(&bytes);
-        if hash != value.content_hash() {
+        // What follows will read the stored form, so it is the stored form that must be sound.
+        let read = A::decode(&bytes).map_err(StoreError::DoesNotReadBack)?;
+        if read.content_hash() != hash {
             return Err(StoreError::HashOfAnotherFile { kind: A::KIND });
         }
         let output = OutputRecord {

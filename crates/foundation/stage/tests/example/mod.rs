@@ -143,40 +143,43 @@ impl Stage for Any {
     }
 }
 
-/// Its content hash leaves its text out.
-pub struct Lie;
-
-impl Content for Lie {
-    const KIND: &'static str = "lie";
-    const SCHEMA: u32 = 1;
-    fn content_hash(&self) -> ContentHash {
-        ContentHasher::new(Self::KIND, Self::SCHEMA).finish()
-    }
+macro_rules! unsound_stage {
+    ($stage:ident, $artifact:ident, $kind:literal, $hash:expr, $decode:expr) => {
+        #[derive(Debug)]
+        pub struct $artifact;
+        impl Content for $artifact {
+            const KIND: &'static str = $kind;
+            const SCHEMA: u32 = 1;
+            fn content_hash(&self) -> ContentHash {
+                ContentHasher::new(Self::KIND, Self::SCHEMA).bytes($hash).finish()
+            }
+        }
+        impl Artifact for $artifact {
+            const EXTENSION: &'static str = "txt";
+            fn encode(&self) -> Vec<u8> {
+                b"text".to_vec()
+            }
+            fn decode(_: &[u8]) -> Result<Self, DecodeError> {
+                $decode
+            }
+        }
+        pub struct $stage;
+        impl Stage for $stage {
+            const NAME: &'static str = "unsound";
+            const CODE: &'static str = "1";
+            type Inputs = ();
+            type Params = ();
+            type Output = $artifact;
+            type Error = Infallible;
+            fn run((): &(), (): &(), _: &Context) -> Result<$artifact, Infallible> {
+                Ok($artifact)
+            }
+        }
+    };
 }
 
-impl Artifact for Lie {
-    const EXTENSION: &'static str = "txt";
-    fn encode(&self) -> Vec<u8> {
-        b"text".to_vec()
-    }
-    fn decode(_: &[u8]) -> Result<Self, DecodeError> {
-        Ok(Self)
-    }
-}
-
-pub struct Liar;
-
-impl Stage for Liar {
-    const NAME: &'static str = "liar";
-    const CODE: &'static str = "1";
-    type Inputs = ();
-    type Params = ();
-    type Output = Lie;
-    type Error = Infallible;
-    fn run((): &(), (): &(), _: &Context) -> Result<Lie, Infallible> {
-        Ok(Lie)
-    }
-}
+unsound_stage!(Liar, Lie, "lie", b"another text", Ok(Self));
+unsound_stage!(Mute, Silence, "mute", b"text", Err(DecodeError::of::<Self>("nothing to read")));
 
 /// Writes a number that is one larger than itself.
 #[derive(Deserialize)]
