@@ -4,6 +4,8 @@
 //! keep their place in the file ([`Located`]), so that what [`crate::study`] finds wrong points at its line. `flatten`
 //! and tagged enums are avoided: they lose those places.
 
+use biplane_optimisation::MatchParams;
+use biplane_segmentation::SegmentParams;
 use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -25,6 +27,12 @@ pub struct PipelineFile {
     pub body: Vec<BodySection>,
     /// The recordings, one `[[trial]]` each.
     pub trial: Vec<TrialSection>,
+    /// How edges are found in the pictures.
+    #[serde(default)]
+    pub segment: SegmentParams,
+    /// How poses are found from the edges.
+    #[serde(default, rename = "match")]
+    pub matching: MatchParams,
     /// Where results go.
     #[serde(default)]
     pub output: OutputSection,
@@ -86,6 +94,8 @@ pub enum Units {
     /// Millimetres.
     #[default]
     Mm,
+    /// Centimetres.
+    Cm,
     /// Metres.
     M,
     /// Inches.
@@ -105,7 +115,7 @@ pub struct TrialSection {
     /// How pictures of the fluoroscopes are paired: by the number in their names or by their place in the list.
     #[serde(default)]
     pub pair_by: PairBy,
-    /// Number (or place) of the other fluoroscopes' picture that belongs to the first one's number (or place) 0.
+    /// Added to the number (or place) of the first fluoroscope's picture to get that of the second one's taken with it.
     #[serde(default)]
     pub offset: i64,
     /// Pictures per second; wins over what the files say.

@@ -6,6 +6,7 @@ use biplane_artifact::Verdict;
 use serde::Serialize;
 
 use crate::outcome::Outcome;
+use crate::results::UNKNOWN;
 use crate::study::Study;
 
 /// What the page says beside the results.
@@ -52,6 +53,21 @@ struct TrialPart {
     cards: Vec<Card>,
 }
 
+#[derive(Serialize)]
+struct Page<'a> {
+    name: &'a str,
+    version: &'a str,
+    good: usize,
+    doubtful: usize,
+    failed: usize,
+    frames: usize,
+    views: Vec<&'a str>,
+    warnings: &'a [String],
+    failures: Vec<(&'a str, &'a str)>,
+    trials: Vec<TrialPart>,
+    provenance: &'a Provenance,
+}
+
 /// The page.
 ///
 /// # Errors
@@ -60,18 +76,20 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
     let mut environment = minijinja::Environment::new();
     environment.add_template("report.html", include_str!("report.html"))?;
     let [good, doubtful, failed] = outcome.verdicts();
-    let trials: Vec<TrialPart> = (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect();
-    Ok(environment.get_template("report.html")?.render(minijinja::context! {
-        name => study.name,
-        version => env!("CARGO_PKG_VERSION"),
-        good, doubtful, failed,
-        frames => outcome.frames.len(),
-        views => study.views.iter().map(|v| v.name.as_str()).collect::<Vec<_>>(),
-        warnings => outcome.warnings,
-        failures => outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect::<Vec<_>>(),
-        trials => minijinja::Value::from_serialize(trials),
-        provenance => minijinja::Value::from_serialize(provenance),
-    })?)
+    let page = Page {
+        name: &study.name,
+        version: env!("CARGO_PKG_VERSION"),
+        good,
+        doubtful,
+        failed,
+        frames: outcome.frames.len(),
+        views: study.views.iter().map(|v| v.name.as_str()).collect(),
+        warnings: &outcome.warnings,
+        failures: outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect(),
+        trials: (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect(),
+        provenance,
+    };
+    Ok(environment.get_template("report.html")?.render(minijinja::value::Serde(page))?)
 }
 
 fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
@@ -98,12 +116,10 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
                     let shares = m.views.iter().map(|v| format!("{:.0}", 100.0 * v.matched_share));
                     shares.collect::<Vec<_>>().join(" / ")
                 }),
-                sigma: found.map(|m| {
-                    [
-                        format!("{:.3}", m.translation_sigma_mm()),
-                        format!("{:.3}", m.rotation_sigma_rad().to_degrees()),
-                    ]
-                }),
+                sigma: found
+                    .map(|m| [m.translation_sigma_mm(), m.rotation_sigma_rad().to_degrees()])
+                    .filter(|sigma| sigma.iter().all(|s| *s < UNKNOWN))
+                    .map(|sigma| sigma.map(|s| format!("{s:.3}"))),
                 start: body.start.word(),
             });
         }

@@ -17,6 +17,9 @@ use crate::study::Study;
 const TWIST: [(&str, &str); 6] =
     [("tx", "mm"), ("ty", "mm"), ("tz", "mm"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
 
+/// Standard deviations and covariances from here on say that nothing is known.
+pub const UNKNOWN: f64 = 1e100;
+
 /// What `poses.README.txt` says.
 pub const README: &str = include_str!("poses_readme.txt");
 
@@ -102,9 +105,12 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
     }
     match found {
         Some(m) => {
-            cells.push(fixed(m.translation_sigma_mm(), 6));
-            cells.push(fixed(m.rotation_sigma_rad().to_degrees(), 6));
-            cells.extend((0..6).flat_map(|i| (i..6).map(move |j| format!("{:.6e}", m.covariance[i][j]))));
+            // A match whose edges do not determine the pose has no covariance; its numbers are immense then.
+            let known = |value: f64, text: String| if value.abs() < UNKNOWN { text } else { String::new() };
+            let (t, r) = (m.translation_sigma_mm(), m.rotation_sigma_rad().to_degrees());
+            cells.extend([known(t, fixed(t, 6)), known(r, fixed(r, 6))]);
+            let upper = (0..6).flat_map(|i| (i..6).map(move |j| m.covariance[i][j]));
+            cells.extend(upper.map(|c| known(c, format!("{c:.6e}"))));
             cells.push(m.iterations.to_string());
         }
         None => cells.extend(std::iter::repeat_n(String::new(), 2 + 21 + 1)),

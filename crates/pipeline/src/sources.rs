@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use biplane_artifact::{Content, ContentHash, Frame, ModelMesh};
-use biplane_stage::Promise;
+use biplane_stage::{Hashed, Promise};
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::slashes;
@@ -61,9 +61,10 @@ pub struct MeshFacts {
 }
 
 impl MeshFacts {
-    fn of(mesh: &ModelMesh, notes: Vec<String>) -> Self {
+    /// Of a mesh and what its reader noted.
+    pub fn of(mesh: &Hashed<ModelMesh>, notes: Vec<String>) -> Self {
         let c = mesh.0.area_centroid();
-        Self { hash: mesh.content_hash(), centroid: [c.x, c.y, c.z], notes }
+        Self { hash: mesh.hash(), centroid: [c.x, c.y, c.z], notes }
     }
 
     /// The hash, for keys.
@@ -132,7 +133,7 @@ impl InputIndex {
         self.known(&key, path, &self.old.frames, |t| &mut t.frames, || read().map(|f| FrameFacts::of(&f)))
     }
 
-    /// What is known of a mesh read in `unit`; reads it if it may have changed. `read` also gives notes.
+    /// What is known of a mesh read in `unit`; `read` is called if it may have changed.
     ///
     /// # Errors
     /// Those of `read`.
@@ -140,16 +141,10 @@ impl InputIndex {
         &self,
         path: &Path,
         unit: &str,
-        read: impl FnOnce() -> Result<(ModelMesh, Vec<String>), E>,
+        read: impl FnOnce() -> Result<MeshFacts, E>,
     ) -> Result<MeshFacts, E> {
         let key = format!("{} in {unit}", self.relative(path));
-        self.known(
-            &key,
-            path,
-            &self.old.meshes,
-            |t| &mut t.meshes,
-            || read().map(|(mesh, notes)| MeshFacts::of(&mesh, notes)),
-        )
+        self.known(&key, path, &self.old.meshes, |t| &mut t.meshes, read)
     }
 
     fn known<F: Clone, E>(

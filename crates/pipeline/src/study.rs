@@ -7,6 +7,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use biplane_optimisation::{MatchError, MatchParams};
+use biplane_segmentation::{SegmentError, SegmentParams};
+
 use crate::config::{InOrder, Located, Origin, PairBy, PipelineFile, TrialSection, Units};
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
 
@@ -23,6 +26,10 @@ pub struct Study {
     pub bodies: Vec<Body>,
     /// In the order of the file.
     pub trials: Vec<Trial>,
+    /// How edges are found.
+    pub segment: SegmentParams,
+    /// How poses are found.
+    pub matching: MatchParams,
     /// Folder of results.
     pub output: PathBuf,
 }
@@ -56,11 +63,11 @@ pub struct Body {
 pub struct Trial {
     /// Its name.
     pub name: String,
-    /// Which views it has, and where their pictures are, in the order of the views.
-    pub frames: Vec<(usize, PathBuf)>,
+    /// Which views it has, and where their pictures are (relative to the study's folder), in the order of the views.
+    pub frames: Vec<(usize, String)>,
     /// How they are paired.
     pub pair_by: PairBy,
-    /// What is added to the first view's number (or place) to get the others'.
+    /// What is added to the first view's number (or place) to get the second's.
     pub offset: i64,
     /// Pictures per second, if given.
     pub frame_rate_hz: Option<f64>,
@@ -105,6 +112,12 @@ impl Study {
         slashes(path.strip_prefix(&self.root).unwrap_or(path))
     }
 
+    /// A message of a lower layer with the study's own folder left out of its paths: results and reports are the same
+    /// wherever the study lies.
+    pub fn shorten(&self, message: &str) -> String {
+        message.replace(&format!("{}{}", self.root.display(), std::path::MAIN_SEPARATOR), "")
+    }
+
     /// Reads and checks a pipeline file.
     ///
     /// # Errors
@@ -120,6 +133,20 @@ impl Study {
         let wrong = |list| StudyError::Wrong(Problems { path: path.to_owned(), text: text.clone(), list });
         let file: PipelineFile = toml::from_str(&text).map_err(|e| wrong(vec![from_toml(&e)]))?;
         let mut check = Check { root, list: Vec::new() };
+        if let Err(error) = file.segment.check() {
+            let key = match &error {
+                SegmentError::Parameter { name, .. } => Some(*name),
+                SegmentError::NoEdge { .. } => None,
+            };
+            check.list.push(parameter(&text, "segment", key, &error.to_string()));
+        }
+        if let Err(error) = file.matching.check() {
+            let key = match &error {
+                MatchError::Parameter { name, .. } => Some(*name),
+                MatchError::Views { .. } | MatchError::Cancelled => None,
+            };
+            check.list.push(parameter(&text, "match", key, &error.to_string()));
+        }
         let study = check.study(file);
         if check.list.is_empty() { Ok(study) } else { Err(wrong(check.list)) }
     }
@@ -133,7 +160,7 @@ struct Check {
 
 impl Check {
     fn study(&mut self, file: PipelineFile) -> Study {
-        let PipelineFile { study, fluoroscope, body, trial, output } = file;
+        let PipelineFile { study, fluoroscope, body, trial, segment, matching, output } = file;
         let name = study.name;
         self.names("fluoroscope", fluoroscope.0.iter().map(|(n, _)| n));
         self.names("body", body.iter().map(|b| &b.name));
@@ -172,7 +199,7 @@ impl Check {
                     .help("such as folder = \"results\""),
             );
         }
-        Study { root: self.root.clone(), name, views, bodies, trials, output: folder }
+        Study { root: self.root.clone(), name, views, bodies, trials, segment, matching, output: folder }
     }
 
     fn trial(&mut self, trial: TrialSection, views: &[View], bodies: &[Body]) -> Trial {
@@ -188,7 +215,10 @@ impl Check {
         }
         for (view, place) in frames {
             match view_names.iter().position(|n| *n == view.get_ref()) {
-                Some(index) => found.push((index, self.pictures(&place))),
+                Some(index) => {
+                    self.pictures(&place);
+                    found.push((index, place.into_inner()));
+                }
                 None => self.list.push(
                     Problem::at(view.span(), format!("there is no fluoroscope `{}`", view.get_ref()))
                         .label(meant(view.get_ref(), view_names.iter().copied()))
@@ -282,10 +312,10 @@ impl Check {
     }
 
     /// A folder, a file, or a pattern that matches something.
-    fn pictures(&mut self, place: &Located) -> PathBuf {
+    fn pictures(&mut self, place: &Located) {
         let path = self.root.join(place.get_ref());
         if path.exists() {
-            return path;
+            return;
         }
         let pattern = place.get_ref().contains(['*', '?', '[']);
         let matches =
@@ -297,7 +327,6 @@ impl Check {
             );
             self.list.push(if pattern { problem } else { self.similar(problem, &path) });
         }
-        path
     }
 
     /// Adds what lies nearby under a similar name.
@@ -327,6 +356,15 @@ impl Check {
         let text = slashes(folder.strip_prefix(&self.root).unwrap_or(folder));
         if text.is_empty() { "the folder of the pipeline file".to_owned() } else { format!("`{text}`") }
     }
+}
+
+/// A parameter out of range, at its value.
+fn parameter(text: &str, table: &str, key: Option<&str>, message: &str) -> Problem {
+    let span = || {
+        let tables = toml::de::DeTable::parse(text).ok()?;
+        Some(tables.get_ref().get(table)?.get_ref().as_table()?.get(key?)?.span())
+    };
+    Problem { span: span(), ..Problem::at(0..0, message) }
 }
 
 /// Without `.` and trailing slashes.

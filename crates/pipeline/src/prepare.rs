@@ -1,0 +1,288 @@
+//! From a study to a list of jobs: calibrations read, frames listed and paired, starts found. No picture is decoded.
+//!
+//! What is wrong with an input that everything hangs on (a calibration, a mesh, a table of starts, frames that do not
+//! pair) ends the run before it starts, with all such faults at once. What is wrong with one picture is found when its
+//! turn comes, and stops only what needs it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use biplane_acquisition::calibration::{read_calibration, read_distortion_csv};
+use biplane_acquisition::frames::{FrameSource, PairBy, list_frames, pair};
+use biplane_acquisition::images::{ImageError, ImageFile, read_frame};
+use biplane_acquisition::meshes::{LengthUnit, read_mesh};
+use biplane_artifact::{Calibration, Frame, ModelMesh, PixelOrigin, Start};
+use biplane_geometry::Point3;
+use biplane_stage::{Hashed, ParamsText};
+
+use crate::config;
+use crate::outcome::StartKind;
+use crate::sources::{InputIndex, MeshFacts};
+use crate::starts::{starts_of, unused_edits};
+use crate::study::{Body, Study, Trial, View};
+use crate::tables::PoseTable;
+
+/// Files with many pictures that are kept open at a time.
+const OPEN_FILES: usize = 8;
+
+/// What is wrong with the inputs, one message each.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", .0.join("\n"))]
+pub struct InputErrors(pub Vec<String>);
+
+/// Pictures taken together, and what is to be found in them.
+#[derive(Debug)]
+pub struct Job {
+    /// Index of the trial.
+    pub trial: usize,
+    /// The frame's label.
+    pub label: String,
+    /// Seconds from the trial's first picture, if known.
+    pub time_s: Option<f64>,
+    /// One picture a view of the trial.
+    pub pictures: Vec<FrameSource>,
+    /// Index of each body, where its start came from, and the start.
+    pub bodies: Vec<(usize, StartKind, Hashed<Start>)>,
+}
+
+/// A study ready to be run or looked at.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The study.
+    pub study: Study,
+    /// What is known of the input files.
+    pub index: InputIndex,
+    /// One a view of the study.
+    pub calibrations: Vec<Hashed<Calibration>>,
+    /// One a body of the study.
+    pub meshes: Vec<Model>,
+    /// In the order of trials and frames.
+    pub jobs: Vec<Job>,
+    /// Worth a look.
+    pub warnings: Vec<String>,
+    /// Parameters of the step `segment`.
+    pub segment: ParamsText,
+    /// Parameters of the step `match`.
+    pub matching: ParamsText,
+    pictures: Pictures,
+}
+
+/// A body's mesh, read when it is first needed.
+#[derive(Debug)]
+pub struct Model {
+    /// What is known of it.
+    pub facts: MeshFacts,
+    path: PathBuf,
+    unit: LengthUnit,
+    loaded: OnceLock<Result<Hashed<ModelMesh>, String>>,
+}
+
+impl Model {
+    /// The mesh.
+    ///
+    /// # Errors
+    /// It cannot be read any more.
+    pub fn load(&self) -> Result<Hashed<ModelMesh>, String> {
+        let read =
+            || read_mesh(&self.path, self.unit).map(|m| Hashed::new(m.model)).map_err(|e| e.to_string());
+        self.loaded.get_or_init(read).clone()
+    }
+}
+
+/// Reads pictures; files that hold many are opened once, not once a picture.
+#[derive(Debug, Default)]
+struct Pictures {
+    many: BTreeSet<PathBuf>,
+    open: Mutex<BTreeMap<PathBuf, Arc<Mutex<Option<ImageFile>>>>>,
+}
+
+impl Pictures {
+    fn read(&self, path: &Path, index: usize) -> Result<Frame, ImageError> {
+        if !self.many.contains(path) {
+            return read_frame(path, index);
+        }
+        let slot = {
+            let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+            if open.len() >= OPEN_FILES && !open.contains_key(path) {
+                open.pop_first();
+            }
+            Arc::clone(open.entry(path.to_owned()).or_default())
+        };
+        let mut file = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        match file.as_mut() {
+            Some(file) => file.frame(index),
+            None => file.insert(ImageFile::open(path)?).frame(index),
+        }
+    }
+}
+
+impl Prepared {
+    /// Reads what is small, lists what is large.
+    ///
+    /// # Errors
+    /// All faults of inputs that everything hangs on.
+    pub fn of(study: Study) -> Result<Self, InputErrors> {
+        let index = InputIndex::open(&study.root, &study.hidden());
+        let mut faults = Faults { study: &study, list: Vec::new() };
+        let mut warnings = Vec::new();
+        let calibrations: Vec<_> =
+            study.views.iter().filter_map(|v| faults.keep(calibration(v)).map(Hashed::new)).collect();
+        let meshes: Vec<Model> = study.bodies.iter().filter_map(|b| faults.keep(model(b, &index))).collect();
+        for (body, mesh) in study.bodies.iter().zip(&meshes) {
+            let file = study.relative(&body.mesh);
+            warnings
+                .extend(mesh.facts.notes.iter().map(|note| format!("body {} ({file}): {note}", body.name)));
+        }
+        let edits = study.edits();
+        let edits = if edits.is_file() { faults.keep(PoseTable::read(&edits)) } else { None };
+        let mut tables: BTreeMap<&Path, PoseTable> = BTreeMap::new();
+        for path in study.trials.iter().filter_map(|t| t.starts.as_deref()) {
+            if !tables.contains_key(path) {
+                tables.extend(faults.keep(PoseTable::read(path)).map(|table| (path, table)));
+            }
+        }
+        let trial_names: Vec<&str> = study.trials.iter().map(|t| t.name.as_str()).collect();
+        let body_names: Vec<&str> = study.bodies.iter().map(|b| b.name.as_str()).collect();
+        for table in tables.values().chain(&edits) {
+            warnings.extend(faults.keep(table.strangers(&trial_names, &body_names)).into_iter().flatten());
+        }
+        let mut jobs = Vec::new();
+        let mut pictures = Pictures::default();
+        for (number, trial) in study.trials.iter().enumerate() {
+            let Some(pairs) = frames(trial, &study, &mut faults, &mut warnings) else { continue };
+            for source in pairs.iter().flat_map(|(_, _, sources)| sources).filter(|s| s.index_in_file > 0) {
+                pictures.many.insert(source.path.clone());
+            }
+            let labels: Vec<&str> = pairs.iter().map(|(label, _, _)| label.as_str()).collect();
+            if let Some(edits) = &edits {
+                warnings.extend(unused_edits(edits, &trial.name, &labels, study.trials.len() == 1));
+            }
+            // A fault before this one leaves indices that do not fit; it is reported, and this trial is not looked at.
+            if meshes.len() != study.bodies.len() {
+                continue;
+            }
+            let table = trial.starts.as_deref().and_then(|path| tables.get(path));
+            let mut starts = Vec::new();
+            for &body in &trial.bodies {
+                let centroid = Point3::from(meshes[body].facts.centroid);
+                let name = &study.bodies[body].name;
+                let found = starts_of(&trial.name, name, &labels, edits.as_ref(), table, centroid);
+                let Some(found) = faults.keep(found) else { continue };
+                let between = found.iter().filter(|(kind, _)| *kind == StartKind::Interpolated).count();
+                if between > 0 {
+                    let all = found.len();
+                    warnings.push(format!(
+                        "trial {}, body {name}: {between} of {all} frames start between the poses given for others",
+                        trial.name
+                    ));
+                }
+                starts.push((body, found));
+            }
+            for (place, (label, time_s, sources)) in pairs.into_iter().enumerate() {
+                let bodies = starts.iter().filter_map(|(body, found)| {
+                    let (kind, pose) = found.get(place)?;
+                    Some((*body, kind.clone(), Hashed::new(Start(*pose))))
+                });
+                jobs.push(Job { trial: number, label, time_s, bodies: bodies.collect(), pictures: sources });
+            }
+        }
+        let segment = faults.keep(ParamsText::of(&study.segment));
+        let matching = faults.keep(ParamsText::of(&study.matching));
+        let warnings = warnings.iter().map(|w| study.shorten(w)).collect();
+        match (segment, matching, faults.list) {
+            (Some(segment), Some(matching), list) if list.is_empty() => {
+                Ok(Self { study, index, calibrations, meshes, jobs, warnings, segment, matching, pictures })
+            }
+            (_, _, list) => Err(InputErrors(list)),
+        }
+    }
+
+    /// Decodes one picture.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn read(&self, source: &FrameSource) -> Result<Frame, ImageError> {
+        self.pictures.read(&source.path, source.index_in_file)
+    }
+}
+
+/// Collects messages.
+struct Faults<'a> {
+    study: &'a Study,
+    list: Vec<String>,
+}
+
+impl Faults<'_> {
+    fn keep<T, E: std::fmt::Display>(&mut self, result: Result<T, E>) -> Option<T> {
+        result.map_err(|e| self.list.push(self.study.shorten(&e.to_string()))).ok()
+    }
+}
+
+fn calibration(view: &View) -> Result<Calibration, biplane_acquisition::calibration::CalibrationError> {
+    let origin = match view.pixel_origin {
+        config::Origin::Centre => PixelOrigin::Centre,
+        config::Origin::Corner => PixelOrigin::Corner,
+    };
+    let mut calibration = read_calibration(&view.calibration, &view.name, origin)?;
+    if let Some(path) = &view.distortion {
+        calibration.distortion = Some(read_distortion_csv(path)?);
+    }
+    Ok(calibration)
+}
+
+fn model(body: &Body, index: &InputIndex) -> Result<Model, biplane_acquisition::meshes::MeshFileError> {
+    let unit = match body.units {
+        config::Units::Mm => LengthUnit::Millimetres,
+        config::Units::Cm => LengthUnit::Centimetres,
+        config::Units::M => LengthUnit::Metres,
+        config::Units::In => LengthUnit::Inches,
+    };
+    let loaded = OnceLock::new();
+    let facts = index.mesh(&body.mesh, unit.name(), || {
+        let file = read_mesh(&body.mesh, unit)?;
+        let notes = file.notes.iter().map(ToString::to_string).collect();
+        let model = Hashed::new(file.model);
+        let facts = MeshFacts::of(&model, notes);
+        let _ = loaded.set(Ok(model));
+        Ok(facts)
+    })?;
+    Ok(Model { facts, path: body.mesh.clone(), unit, loaded })
+}
+
+type Pair = (String, Option<f64>, Vec<FrameSource>);
+
+/// Label, time and pictures of each frame of a trial.
+fn frames(
+    trial: &Trial,
+    study: &Study,
+    faults: &mut Faults<'_>,
+    warnings: &mut Vec<String>,
+) -> Option<Vec<Pair>> {
+    let mut views = Vec::new();
+    for (view, place) in &trial.frames {
+        let named = |e: biplane_acquisition::frames::FramesError| format!("trial {}: {e}", trial.name);
+        let list = faults.keep(list_frames(&study.root, place).map_err(named));
+        views.extend(list.map(|list| (study.views[*view].name.clone(), list)));
+    }
+    if views.len() != trial.frames.len() {
+        return None;
+    }
+    let by = match trial.pair_by {
+        config::PairBy::Number => PairBy::Number,
+        config::PairBy::Index => PairBy::Index,
+    };
+    let paired = pair(&views, by, trial.offset).map_err(|e| format!("trial {}: {e}", trial.name));
+    let paired = faults.keep(paired)?;
+    warnings.extend(paired.unpaired.iter().map(|u| format!("trial {}: {u}", trial.name)));
+    let first = paired.pairs.first().and_then(|p| p.sources.first()).and_then(|s| s.number);
+    let time = |place: usize, source: Option<&FrameSource>| match (trial.frame_rate_hz, by, source) {
+        (Some(hz), PairBy::Number, Some(s)) => {
+            s.number.zip(first).map(|(number, first)| number.abs_diff(first) as f64 / hz)
+        }
+        (Some(hz), _, _) => Some(place as f64 / hz),
+        (None, _, source) => source.and_then(|s| s.time_s),
+    };
+    let pairs = paired.pairs.into_iter().enumerate();
+    Some(pairs.map(|(place, p)| (p.label, time(place, p.sources.first()), p.sources)).collect())
+}

@@ -1,0 +1,279 @@
+//! Runs a study: every frame's pictures to curves, curves to poses, then `poses.csv` and the report.
+//!
+//! Frames are spread over threads; what comes out does not depend on how many, nor on the order they finish in. A frame
+//! that fails stops nothing but itself.
+
+use std::collections::BTreeMap;
+
+use biplane_artifact::{Match, Verdict};
+use biplane_stage::{Context, How, Store, StoreError};
+use rayon::prelude::*;
+
+use crate::diagnostics::slashes;
+use crate::logging::Progress;
+use crate::outcome::{BodyOutcome, Failure, FrameOutcome, Outcome, StepCount};
+use crate::prepare::{InputErrors, Job, Prepared};
+use crate::report::{Provenance, ReportError, report_html};
+use crate::results::{README, poses_csv, write_if_changed};
+use crate::steps::{ItemError, MATCH, SEGMENT, Steps};
+use crate::study::Study;
+
+/// The steps in order.
+const STEPS: [&str; 2] = [SEGMENT, MATCH];
+
+/// Why a run came to no end.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// Inputs that everything hangs on are wrong.
+    #[error(transparent)]
+    Inputs(#[from] InputErrors),
+    /// The store cannot be used.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The results cannot be written.
+    #[error("cannot write {path}: {source}")]
+    Write {
+        /// Which file.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The table cannot be made.
+    #[error("cannot make poses.csv: {0}")]
+    Table(#[from] csv::Error),
+    /// The page cannot be made.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// No threads.
+    #[error("cannot start threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A person stopped it.
+    #[error(
+        "stopped: {done} of {frames} frames are finished and kept, poses.csv and the report are those of the last whole \
+         run. The same command goes on from here"
+    )]
+    Stopped {
+        /// Frames that were finished.
+        done: usize,
+        /// All frames.
+        frames: usize,
+    },
+}
+
+/// What one frame gave, its counts in the order of [`STEPS`].
+struct Frame {
+    outcome: FrameOutcome,
+    failures: Vec<Failure>,
+    warnings: Vec<String>,
+    counts: [StepCount; 2],
+    inputs: Vec<(String, String)>,
+}
+
+/// Runs everything that is to do on `threads` threads (0: one a core) and writes the results.
+///
+/// # Errors
+/// See [`RunError`]. Items that fail are no error: they are in the outcome.
+pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Outcome), RunError> {
+    let prepared = Prepared::of(study)?;
+    let store = Store::open(&prepared.study.hidden())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    for warning in &prepared.warnings {
+        tracing::warn!("{warning}");
+    }
+    for view in &prepared.study.views {
+        let origin = format!("{:?}", view.pixel_origin).to_lowercase();
+        let file = prepared.study.relative(&view.calibration);
+        tracing::debug!("view {}: {file} counts pixels from the {origin} of the first one", view.name);
+    }
+    let steps = Steps { prepared: &prepared, store: &store, context };
+    let progress = Progress::new("Matching", prepared.jobs.len());
+    let frames: Vec<Option<Frame>> = pool.install(|| {
+        prepared
+            .jobs
+            .par_iter()
+            .map(|job| {
+                let frame = run_frame(&steps, job);
+                progress.tick();
+                frame
+            })
+            .collect()
+    });
+    drop(progress);
+    let done = frames.iter().flatten().count();
+    let stopped = done < frames.len();
+    let mut provenance = provenance(&prepared);
+    let outcome = gather(frames.into_iter().flatten(), &prepared.warnings, &mut provenance);
+    let (study, jobs) = (prepared.study, prepared.jobs.len());
+    let hidden = study.hidden();
+    let index = prepared.index.save(!stopped);
+    index.map_err(|source| RunError::Write { path: slashes(&hidden.join("inputs.json")), source })?;
+    if stopped {
+        return Err(RunError::Stopped { done, frames: jobs });
+    }
+    write(&study, &outcome, &provenance)?;
+    Ok((study, outcome))
+}
+
+fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
+    if steps.context.cancelled() {
+        return None;
+    }
+    let study = &steps.prepared.study;
+    let mut frame = Frame {
+        outcome: FrameOutcome {
+            trial: job.trial,
+            label: job.label.clone(),
+            time_s: job.time_s,
+            bodies: Vec::new(),
+            overlays: Vec::new(),
+        },
+        failures: Vec::new(),
+        warnings: Vec::new(),
+        counts: [StepCount::default(); 2],
+        inputs: Vec::new(),
+    };
+    let slots: Vec<_> =
+        (0..job.pictures.len()).into_par_iter().map(|slot| steps.segment(job, slot)).collect();
+    let mut curves = Vec::new();
+    let mut missing: Option<String> = None;
+    for (slot, result) in slots.into_iter().enumerate() {
+        let (_, view) = steps.view(job, slot);
+        let name = format!("{SEGMENT}/{}", steps.item(job, view));
+        let source = &job.pictures[slot];
+        if let Ok(facts) = steps.picture(job, slot) {
+            let part =
+                if source.index_in_file > 0 { format!("#{}", source.index_in_file) } else { String::new() };
+            frame.inputs.push((study.relative(&source.path) + &part, facts.hash().to_hex()));
+        }
+        match result {
+            Ok((stored, how)) => {
+                count(&mut frame, 0, &name, &how);
+                curves.push(stored);
+            }
+            Err(ItemError::Cancelled) => return None,
+            Err(ItemError::Failed(message)) => {
+                let message = study.shorten(&message);
+                frame.counts[0].failed += 1;
+                frame.failures.push(Failure { item: name.clone(), message });
+                missing.get_or_insert(format!("{name} failed"));
+            }
+        }
+    }
+    let bodies: Vec<_> = (0..job.bodies.len())
+        .into_par_iter()
+        .map(|place| match &missing {
+            Some(message) => Err(ItemError::Failed(message.clone())),
+            None => steps.matching(job, place, &curves),
+        })
+        .collect();
+    for ((body, start, pose), result) in job.bodies.iter().zip(bodies) {
+        let name = format!("{MATCH}/{}", steps.item(job, &study.bodies[*body].name));
+        let result = match result {
+            Ok((found, how)) => {
+                count(&mut frame, 1, &name, &how);
+                Ok(named(&found, steps, job))
+            }
+            Err(ItemError::Cancelled) => return None,
+            Err(ItemError::Failed(message)) => {
+                let message = study.shorten(&message);
+                frame.counts[1].failed += 1;
+                // What only follows from another failure is not listed again.
+                if missing.is_none() {
+                    frame.failures.push(Failure { item: name, message: message.clone() });
+                }
+                Err(message)
+            }
+        };
+        frame.outcome.bodies.push(BodyOutcome {
+            body: *body,
+            start: start.clone(),
+            start_pose: pose.0,
+            result,
+        });
+    }
+    Some(frame)
+}
+
+fn count(frame: &mut Frame, step: usize, item: &str, how: &How) {
+    match how {
+        How::Cached => frame.counts[step].cached += 1,
+        How::Ran => frame.counts[step].ran += 1,
+        How::Remade(damage) => {
+            frame.counts[step].ran += 1;
+            frame.warnings.push(format!("{item} was made again: {damage}"));
+        }
+    }
+}
+
+/// The match with its views' numbers turned into names: the stage knows no names.
+fn named(found: &Match, steps: &Steps<'_>, job: &Job) -> Match {
+    let mut found = found.clone();
+    if found.verdict != Verdict::Good {
+        for slot in (0..job.pictures.len()).rev() {
+            let (_, view) = steps.view(job, slot);
+            found.reason = found.reason.replace(&format!("view {}", slot + 1), &format!("view {view}"));
+        }
+    }
+    found
+}
+
+fn gather(frames: impl Iterator<Item = Frame>, warnings: &[String], provenance: &mut Provenance) -> Outcome {
+    let mut outcome = Outcome { warnings: warnings.to_vec(), ..Outcome::default() };
+    let mut steps = STEPS.map(|name| (name, StepCount::default()));
+    let mut inputs: BTreeMap<String, String> = provenance.inputs.drain(..).collect();
+    for frame in frames {
+        for ((_, sum), part) in steps.iter_mut().zip(frame.counts) {
+            sum.cached += part.cached;
+            sum.ran += part.ran;
+            sum.failed += part.failed;
+        }
+        for warning in &frame.warnings {
+            tracing::warn!("{warning}");
+        }
+        inputs.extend(frame.inputs);
+        outcome.warnings.extend(frame.warnings);
+        outcome.failures.extend(frame.failures);
+        outcome.frames.push(frame.outcome);
+    }
+    provenance.inputs = inputs.into_iter().collect();
+    outcome.steps = steps.to_vec();
+    outcome
+}
+
+/// Parameters and the hashes of calibrations and meshes; those of pictures come with the frames.
+fn provenance(prepared: &Prepared) -> Provenance {
+    let study = &prepared.study;
+    let text = |result: Result<String, toml::ser::Error>| result.unwrap_or_default();
+    let mut inputs = Vec::new();
+    for (view, calibration) in study.views.iter().zip(&prepared.calibrations) {
+        let origin = format!("{:?}", view.pixel_origin).to_lowercase();
+        let distortion = view.distortion.as_ref().map(|d| format!(", {}", study.relative(d)));
+        let file = study.relative(&view.calibration);
+        let name =
+            format!("{file}{} (view {}, pixel_origin {origin})", distortion.unwrap_or_default(), view.name);
+        inputs.push((name, calibration.hash().to_hex()));
+    }
+    for (body, mesh) in study.bodies.iter().zip(&prepared.meshes) {
+        inputs.push((study.relative(&body.mesh), mesh.facts.hash().to_hex()));
+    }
+    Provenance {
+        parameters: vec![
+            (SEGMENT.to_owned(), text(toml::to_string(&study.segment))),
+            (MATCH.to_owned(), text(toml::to_string(&study.matching))),
+        ],
+        inputs,
+    }
+}
+
+fn write(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<(), RunError> {
+    let files = [
+        ("poses.csv", poses_csv(study, outcome)?),
+        ("poses.README.txt", README.as_bytes().to_vec()),
+        ("report.html", report_html(study, outcome, provenance)?.into_bytes()),
+    ];
+    for (name, bytes) in files {
+        let path = study.output.join(name);
+        write_if_changed(&path, &bytes).map_err(|source| RunError::Write { path: slashes(&path), source })?;
+    }
+    Ok(())
+}

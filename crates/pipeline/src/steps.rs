@@ -1,0 +1,209 @@
+//! The steps of the method as items of a study: what each reads, its name in the store, how it runs and is explained.
+//!
+//! `segment/<trial>/<frame>/<view>` makes curves from a picture, `match/<trial>/<frame>/<body>` a pose from the curves of
+//! all views.
+
+use biplane_artifact::{Artifact, Curves, Match};
+use biplane_optimisation::{MatchBody, MatchInputs};
+use biplane_segmentation::{Segment, SegmentInputs};
+use biplane_stage::{
+    Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, Promised, Stage, Store, StoreError,
+    Stored,
+};
+
+use crate::prepare::{Job, Prepared};
+use crate::sources::FrameFacts;
+
+/// Step of edge curves.
+pub const SEGMENT: &str = "segment";
+/// Step of poses.
+pub const MATCH: &str = "match";
+
+/// Why an item has no output.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ItemError {
+    /// The run was stopped.
+    #[error("stopped")]
+    Cancelled,
+    /// For people.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl ItemError {
+    fn of(error: impl std::fmt::Display) -> Self {
+        Self::Failed(error.to_string())
+    }
+
+    fn of_execute<S: std::fmt::Display, L: std::fmt::Display>(error: ExecuteError<S, L>) -> Self {
+        match error {
+            ExecuteError::Cancelled => Self::Cancelled,
+            other => Self::of(other),
+        }
+    }
+}
+
+/// A study, its store, and how to run.
+#[derive(Debug)]
+pub struct Steps<'a> {
+    /// The study.
+    pub prepared: &'a Prepared,
+    /// Its store.
+    pub store: &'a Store,
+    /// Threads see this to stop.
+    pub context: &'a Context,
+}
+
+impl Steps<'_> {
+    /// Name of a job's item in the store.
+    pub fn item(&self, job: &Job, last: &str) -> Item {
+        Item::of([self.prepared.study.trials[job.trial].name.as_str(), &job.label, last])
+    }
+
+    /// Name of the view of a job's picture.
+    pub fn view(&self, job: &Job, slot: usize) -> (usize, &str) {
+        let view = self.prepared.study.trials[job.trial].frames[slot].0;
+        (view, self.prepared.study.views[view].name.as_str())
+    }
+
+    /// What is known of a picture; its size must be that of the view's calibration.
+    ///
+    /// # Errors
+    /// It cannot be read, or has another size.
+    pub fn picture(&self, job: &Job, slot: usize) -> Result<FrameFacts, ItemError> {
+        let source = &job.pictures[slot];
+        let facts =
+            self.prepared.index.frame(&source.path, source.index_in_file, || self.prepared.read(source));
+        let facts = facts.map_err(ItemError::of)?;
+        let (view, name) = self.view(job, slot);
+        let expected = self.prepared.calibrations[view].size;
+        if facts.size != expected {
+            let [found, expected] = [facts.size, expected].map(|[w, h]| format!("{w} x {h}"));
+            return Err(ItemError::Failed(format!(
+                "{}: {found} pixels, but the calibration of view {name} ({}) is for {expected}. Use the pictures that were \
+                 calibrated, neither cropped nor scaled, or the calibration that belongs to these",
+                source.path.display(),
+                self.prepared.study.views[view].calibration.display()
+            )));
+        }
+        Ok(facts)
+    }
+
+    /// Brings one picture to its curves.
+    ///
+    /// # Errors
+    /// The picture cannot be used, the stage failed, or the store did.
+    pub fn segment(&self, job: &Job, slot: usize) -> Result<(Stored<Curves>, How), ItemError> {
+        let facts = self.picture(job, slot)?;
+        let promised = SegmentInputs::<Promised> { frame: facts.promise() };
+        let load =
+            || self.prepared.read(&job.pictures[slot]).map(|f| SegmentInputs { frame: Hashed::new(f) });
+        let item = self.item(job, self.view(job, slot).1);
+        self.store
+            .execute::<Segment, _>(SEGMENT, &item, &self.prepared.segment, &promised, load, self.context)
+            .map(|done| (done.output, done.how))
+            .map_err(ItemError::of_execute)
+    }
+
+    fn match_promised(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> MatchInputs<Promised> {
+        let (body, _, start) = &job.bodies[place];
+        MatchInputs {
+            curves: curves.iter().map(Stored::promise).collect(),
+            calibrations: (0..curves.len())
+                .map(|slot| self.prepared.calibrations[self.view(job, slot).0].promise())
+                .collect(),
+            model: self.prepared.meshes[*body].facts.promise(),
+            start: start.promise(),
+        }
+    }
+
+    /// Brings one body to its pose.
+    ///
+    /// # Errors
+    /// The stage failed, or the store did.
+    pub fn matching(
+        &self,
+        job: &Job,
+        place: usize,
+        curves: &[Stored<Curves>],
+    ) -> Result<(Hashed<Match>, How), ItemError> {
+        let (body, _, start) = &job.bodies[place];
+        let load = || -> Result<MatchInputs, String> {
+            Ok(MatchInputs {
+                curves: curves.iter().map(|c| self.read(c)).collect::<Result<_, _>>()?,
+                calibrations: (0..curves.len())
+                    .map(|slot| self.prepared.calibrations[self.view(job, slot).0].clone())
+                    .collect(),
+                model: self.prepared.meshes[*body].load()?,
+                start: start.clone(),
+            })
+        };
+        let promised = self.match_promised(job, place, curves);
+        let item = self.item(job, &self.prepared.study.bodies[*body].name);
+        let done = self
+            .store
+            .execute::<MatchBody, _>(MATCH, &item, &self.prepared.matching, &promised, load, self.context)
+            .map_err(ItemError::of_execute)?;
+        Ok((self.read(&done.output).map_err(ItemError::Failed)?, done.how))
+    }
+
+    /// Reads a stored output; a damaged one is taken away, so that the next run makes it again.
+    fn read<A: Artifact>(&self, stored: &Stored<A>) -> Result<Hashed<A>, String> {
+        stored.load().map_err(|error| {
+            if let StoreError::Damaged(damage) = &error
+                && self.store.discard(damage.key).is_ok()
+            {
+                return format!("{damage}. It was taken away: run again to make it anew");
+            }
+            error.to_string()
+        })
+    }
+
+    /// Why a picture would be worked on, and its curves if they are there.
+    ///
+    /// # Errors
+    /// The picture cannot be used, or the store cannot.
+    pub fn explain_segment(
+        &self,
+        job: &Job,
+        slot: usize,
+    ) -> Result<(Explanation, Option<Stored<Curves>>), ItemError> {
+        let facts = self.picture(job, slot)?;
+        let parts = KeyParts::of::<Segment>(
+            &self.prepared.segment,
+            &SegmentInputs::<Promised> { frame: facts.promise() },
+        );
+        self.explain::<Segment>(SEGMENT, &self.item(job, self.view(job, slot).1), &parts)
+    }
+
+    /// Why a body would be matched.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn explain_match(
+        &self,
+        job: &Job,
+        place: usize,
+        curves: &[Stored<Curves>],
+    ) -> Result<Explanation, ItemError> {
+        let promised = self.match_promised(job, place, curves);
+        let parts = KeyParts::of::<MatchBody>(&self.prepared.matching, &promised);
+        let item = self.item(job, &self.prepared.study.bodies[job.bodies[place].0].name);
+        self.explain::<MatchBody>(MATCH, &item, &parts).map(|(why, _)| why)
+    }
+
+    fn explain<S: Stage>(
+        &self,
+        step: &str,
+        item: &Item,
+        parts: &KeyParts,
+    ) -> Result<(Explanation, Option<Stored<S::Output>>), ItemError> {
+        let why = self.store.explain::<S>(step, item, parts).map_err(ItemError::of)?;
+        let found = if why.cached() {
+            self.store.get::<S::Output>(parts.key()).map_err(ItemError::of)?
+        } else {
+            None
+        };
+        Ok((why, found))
+    }
+}
