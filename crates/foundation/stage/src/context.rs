@@ -149,6 +149,7 @@ mod tests {
     use super::*;
     use std::sync::Barrier;
     use std::sync::atomic::AtomicUsize;
+    use std::time::Instant;
 
     fn hash(n: u8) -> ContentHash {
         ContentHash::from_bytes([n; 32])
@@ -183,7 +184,7 @@ mod tests {
 
     #[test]
     fn building_within_building_does_not_wait_for_itself() {
-        let context = Context::new();
+        let (context, started) = (Context::new(), Instant::now());
         let outer = context.prepared(hash(1), || {
             // What a thread pool does when it hands an item to a thread that waits for its own parallel loop.
             let same = context.prepared(hash(1), || 5_u32);
@@ -191,6 +192,7 @@ mod tests {
             *same + *other
         });
         assert_eq!(*outer, 12);
+        assert!(started.elapsed() < PATIENCE);
         assert_eq!(*context.prepared(hash(1), || 0_u32), 12);
         assert_eq!(*context.prepared(hash(2), || 0_u32), 7);
     }

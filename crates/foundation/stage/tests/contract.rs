@@ -103,11 +103,11 @@ fn the_key_changes_with_every_part() {
 }
 
 #[test]
-fn the_kind_and_schema_of_inputs_and_output_are_in_the_key() {
+fn the_role_kind_and_schema_of_an_input_and_of_the_output_are_in_the_key() {
     let value = serde_json::json!({});
     let params = ParamsText::of(&value).unwrap();
     let hash = Text(String::new()).content_hash();
-    let keys = example::keys_that_differ_in_kind_and_schema_alone(&params, hash);
+    let keys = example::keys_that_differ_in_role_kind_or_schema_alone(&params, hash);
     for (i, a) in keys.iter().enumerate() {
         assert_eq!(keys.iter().position(|b| b == a), Some(i));
     }

@@ -192,9 +192,9 @@ impl Serialize for Drifting {
 }
 
 macro_rules! kind_stage {
-    ($stage:ident, $inputs:ident, $input:ident, $output:ident) => {
+    ($stage:ident, $inputs:ident, $role:ident, $input:ident, $output:ident) => {
         inputs! {
-            pub struct $inputs { text: $input }
+            pub struct $inputs { $role: $input }
         }
         pub struct $stage;
         impl Stage for $stage {
@@ -205,21 +205,23 @@ macro_rules! kind_stage {
             type Output = $output;
             type Error = Infallible;
             fn run(inputs: &$inputs, _: &serde_json::Value, _: &Context) -> Result<$output, Infallible> {
-                Ok($output(inputs.text.0.clone()))
+                Ok($output(inputs.$role.0.clone()))
             }
         }
     };
 }
 
-kind_stage!(Plain, PlainInputs, Text, Text);
-kind_stage!(KindIn, KindInInputs, OtherKind, Text);
-kind_stage!(SchemaIn, SchemaInInputs, OtherSchema, Text);
-kind_stage!(KindOut, KindOutInputs, Text, OtherKind);
-kind_stage!(SchemaOut, SchemaOutInputs, Text, OtherSchema);
+kind_stage!(Plain, PlainInputs, text, Text, Text);
+kind_stage!(Role, RoleInputs, title, Text, Text);
+kind_stage!(KindIn, KindInInputs, text, OtherKind, Text);
+kind_stage!(SchemaIn, SchemaInInputs, text, OtherSchema, Text);
+kind_stage!(KindOut, KindOutInputs, text, Text, OtherKind);
+kind_stage!(SchemaOut, SchemaOutInputs, text, Text, OtherSchema);
 
-pub fn keys_that_differ_in_kind_and_schema_alone(params: &ParamsText, hash: ContentHash) -> [Key; 5] {
+pub fn keys_that_differ_in_role_kind_or_schema_alone(params: &ParamsText, hash: ContentHash) -> [Key; 6] {
     [
         KeyParts::of::<Plain>(params, &PlainInputs::<Promised> { text: Promise::new(hash) }).key(),
+        KeyParts::of::<Role>(params, &RoleInputs::<Promised> { title: Promise::new(hash) }).key(),
         KeyParts::of::<KindIn>(params, &KindInInputs::<Promised> { text: Promise::new(hash) }).key(),
         KeyParts::of::<SchemaIn>(params, &SchemaInInputs::<Promised> { text: Promise::new(hash) }).key(),
         KeyParts::of::<KindOut>(params, &KindOutInputs::<Promised> { text: Promise::new(hash) }).key(),
