@@ -1,7 +1,13 @@
 //! The program `biplane`: from two X-ray videos, their calibrations and meshes to poses.
+//!
+//! [`study`] reads and checks `pipeline.toml`, [`prepare`] lists what there is to do, [`run`] does it through the
+//! [`steps`] of the method and writes [`results`] and [`report`], [`look`] says what would be done and why. [`cli`] is
+//! the command line.
 
+pub mod cli;
 pub mod config;
 pub mod diagnostics;
+pub mod init;
 pub mod logging;
 pub mod look;
 pub mod outcome;

@@ -1,0 +1,370 @@
+//! The command line: what it takes, what it prints, how it ends.
+//!
+//! Results go to stdout, everything else to stderr. Exit codes: 0 good, 1 some items failed, 2 the configuration (or the
+//! command line) is wrong, 3 an input is wrong, 4 the program or the disk failed, 130 stopped by a person.
+
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use biplane_stage::{Clean, Context, Size, Store};
+use clap::{ArgAction, Parser, Subcommand};
+
+use crate::diagnostics::slashes;
+use crate::logging::{self, LogFormat};
+use crate::look::{Fate, LookError, counts, look};
+use crate::outcome::Outcome;
+use crate::run::{RunError, run};
+use crate::study::{Study, StudyError};
+use crate::{init, reference, summary};
+
+/// How a command ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// All is well.
+    Good = 0,
+    /// Some items failed.
+    SomeFailed = 1,
+    /// `pipeline.toml` or the command line is wrong.
+    BadConfiguration = 2,
+    /// An input file is wrong.
+    BadInput = 3,
+    /// The program or the disk failed.
+    Internal = 4,
+    /// Stopped by a person.
+    Stopped = 130,
+}
+
+impl From<End> for ExitCode {
+    fn from(end: End) -> Self {
+        ExitCode::from(end as u8)
+    }
+}
+
+/// From two X-ray videos of a joint, their calibrations and meshes of its bones or implants to the pose of each body in
+/// each frame.
+///
+/// A study is a folder with a `pipeline.toml`. `biplane init FOLDER` writes one for a folder of data; `biplane run` does
+/// what is to do and no more: what was computed before, from the same files and settings, is not computed again.
+#[derive(Debug, Parser)]
+#[command(
+    name = "biplane",
+    version,
+    after_help = "Examples:
+  biplane init my-study           look at a folder of data, write my-study/pipeline.toml
+  biplane inspect frames/A/*.tif  say what files hold
+  biplane run my-study            images to poses: results/poses.csv, overlays, report.html
+  biplane explain 0017            why the items of frame 0017 would run
+  biplane clean --dry-run         what the store could free
+
+Exit codes: 0 good, 1 some frames failed, 2 bad configuration, 3 bad input, 4 internal, 130 stopped."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// How log lines on stderr look.
+    #[arg(long, global = true, value_enum, default_value = "text")]
+    log_format: LogFormat,
+    /// Say more; twice for everything.
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    verbose: u8,
+    /// Say only what went wrong.
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Pipeline {
+    /// The pipeline file, or the folder it lies in.
+    #[arg(default_value = "pipeline.toml", value_name = "PIPELINE")]
+    file: PathBuf,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Do what is to do: images to curves to poses, a table and a report.
+    #[command(after_help = "Examples:
+  biplane run                       the pipeline.toml of this folder
+  biplane run study/pipeline.toml --threads 4
+
+Stop it with Ctrl-C at any time: finished frames are kept, and the same command goes on.
+To correct a pose, write a row into edits/poses.csv beside the pipeline file and run again.")]
+    Run {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// Threads; 0 is one for each core. The results do not depend on it.
+        #[arg(long, default_value_t = 0)]
+        threads: usize,
+    },
+    /// Say how much a run would do, and do nothing.
+    Plan {
+        #[command(flatten)]
+        pipeline: Pipeline,
+    },
+    /// Say why each step would run.
+    #[command(after_help = "Examples:
+  biplane explain                     everything that would run
+  biplane explain match/lunge/0017    the bodies of one frame
+  biplane explain femur --all         every item with `femur` in its name, cached ones too")]
+    Explain {
+        /// Part of an item's name (step/trial/frame/view or body); `*` stands for anything.
+        pattern: Option<String>,
+        /// The pipeline file, or the folder it lies in.
+        #[arg(short, long, default_value = "pipeline.toml")]
+        pipeline: PathBuf,
+        /// Cached items too.
+        #[arg(long)]
+        all: bool,
+    },
+    /// Show the results of the last run and the size of the store.
+    Status {
+        #[command(flatten)]
+        pipeline: Pipeline,
+    },
+    /// Free what the store keeps of earlier settings and inputs. Results and edits are left alone.
+    Clean {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// Only say what would be freed.
+        #[arg(long)]
+        dry_run: bool,
+        /// Free everything: the next run starts from the images.
+        #[arg(long)]
+        all: bool,
+    },
+    /// Say what files hold: images, calibrations, meshes.
+    Inspect {
+        /// Files.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// Look at a folder of data and write a commented pipeline.toml for it.
+    Init {
+        /// The folder; the file is written there, unless there is one.
+        #[arg(default_value = ".")]
+        folder: PathBuf,
+    },
+    /// Print the JSON Schema of pipeline.toml, for editors.
+    Schema,
+}
+
+/// Runs one command line; the first argument is the program's name.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(help) => {
+            let end = if help.use_stderr() { End::BadConfiguration } else { End::Good };
+            let _ = help.print();
+            return end.into();
+        }
+    };
+    let verbosity = if arguments.quiet { -1 } else { i8::try_from(arguments.verbose).unwrap_or(i8::MAX) };
+    logging::start(arguments.log_format, verbosity);
+    match obey(arguments.command) {
+        Ok(end) => end.into(),
+        Err((end, message)) => {
+            eprintln!("{message}");
+            end.into()
+        }
+    }
+}
+
+type Ended = Result<End, (End, String)>;
+
+fn obey(command: Command) -> Ended {
+    match command {
+        Command::Run { pipeline, threads } => run_command(load(&pipeline.file)?, threads),
+        Command::Plan { pipeline } => {
+            let looks = look(load(&pipeline.file)?).map_err(look_failed)?;
+            print(&counts(&looks));
+            let failing: Vec<&str> =
+                looks.iter().filter(|l| l.fate == Fate::Fails).map(|l| l.line.as_str()).collect();
+            if failing.is_empty() {
+                return Ok(End::Good);
+            }
+            print(&format!("\nCannot run:\n{}\n", failing.join("\n")));
+            Ok(End::SomeFailed)
+        }
+        Command::Explain { pattern, pipeline, all } => {
+            let looks = look(load(&pipeline)?).map_err(look_failed)?;
+            let pattern = pattern.map(|p| glob::Pattern::new(&format!("*{p}*")));
+            let pattern =
+                pattern.transpose().map_err(|e| (End::BadConfiguration, format!("the pattern: {e}")))?;
+            let matching: Vec<_> = looks
+                .iter()
+                .filter(|l| {
+                    let name = l.line.split(':').next().unwrap_or_default();
+                    pattern.as_ref().is_none_or(|p| p.matches(name))
+                })
+                .collect();
+            let shown: Vec<&str> =
+                matching.iter().filter(|l| all || l.fate != Fate::Cached).map(|l| l.line.as_str()).collect();
+            match (matching.len(), shown.len()) {
+                (0, _) => print("no item has such a name (step/trial/frame/view or body)\n"),
+                (n, 0) => print(&format!("nothing would run: {n} items are cached\n")),
+                _ => print(&(shown.join("\n") + "\n")),
+            }
+            Ok(End::Good)
+        }
+        Command::Status { pipeline } => status(&load(&pipeline.file)?),
+        Command::Clean { pipeline, dry_run, all } => {
+            let store = Store::open(&load(&pipeline.file)?.hidden()).map_err(internal)?;
+            let which = if all { Clean::Everything } else { Clean::Unreferenced };
+            let Size { entries, bytes } = store.clean(which, dry_run).map_err(internal)?;
+            let verb = if dry_run { "would free" } else { "freed" };
+            print(&format!("{verb} {entries} entries, {}\n", megabytes(bytes)));
+            Ok(End::Good)
+        }
+        Command::Inspect { files } => {
+            let mut end = End::Good;
+            for file in files {
+                match biplane_acquisition::inspect::describe(&file) {
+                    Ok(text) => print(&format!("{}\n{text}\n", slashes(&file))),
+                    Err(error) => {
+                        eprintln!("{error}");
+                        end = End::BadInput;
+                    }
+                }
+            }
+            Ok(end)
+        }
+        Command::Init { folder } => match init::init(&folder) {
+            Ok(text) => {
+                print(&text);
+                Ok(End::Good)
+            }
+            Err(error @ init::InitError::Exists { .. }) => Err((End::BadConfiguration, error.to_string())),
+            Err(error) => Err((End::BadInput, error.to_string())),
+        },
+        Command::Schema => {
+            print(&reference::schema());
+            Ok(End::Good)
+        }
+    }
+}
+
+fn load(file: &Path) -> Result<Study, (End, String)> {
+    let path = if file.is_dir() { file.join("pipeline.toml") } else { file.to_owned() };
+    Study::load(&path).map_err(|error| {
+        let text = match &error {
+            StudyError::Wrong(problems) => problems.render(std::io::stderr().is_terminal()),
+            StudyError::Unreadable { .. } => error.to_string(),
+        };
+        (End::BadConfiguration, text)
+    })
+}
+
+fn run_command(study: Study, threads: usize) -> Ended {
+    let context = Context::new();
+    stop_on_interrupt(&context);
+    let (study, outcome) = run(study, threads, &context).map_err(|error| {
+        let end = match &error {
+            RunError::Inputs(_) => End::BadInput,
+            RunError::Stopped { .. } => End::Stopped,
+            _ => End::Internal,
+        };
+        (end, error.to_string())
+    })?;
+    print(&closing(&study, &outcome));
+    Ok(if outcome.any_failed() { End::SomeFailed } else { End::Good })
+}
+
+/// Ctrl-C lets frames under way finish or stop; a second one ends the program at once.
+fn stop_on_interrupt(context: &Context) {
+    let context = context.clone();
+    let handler = move || {
+        if context.cancelled() {
+            std::process::exit(End::Stopped as i32);
+        }
+        context.cancel();
+        eprintln!("stopping; what is finished is kept (Ctrl-C again ends at once)");
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        tracing::debug!("Ctrl-C is not handled: {error}");
+    }
+}
+
+/// What a run says at its end.
+fn closing(study: &Study, outcome: &Outcome) -> String {
+    let mut text = summary::table(&summary::of_outcome(study, outcome));
+    let cached: usize = outcome.steps.iter().map(|(_, c)| c.cached).sum();
+    let ran: usize = outcome.steps.iter().map(|(_, c)| c.ran).sum();
+    let [good, doubtful, failed] = outcome.verdicts();
+    text += &format!("\n{good} good, {doubtful} doubtful, {failed} failed. ");
+    text += &match (ran, outcome.failures.len()) {
+        (0, 0) => format!("Nothing to do: {cached} items cached.\n"),
+        _ => {
+            let steps = outcome.steps.iter();
+            let parts = steps.map(|(name, c)| format!("{name} {} run, {} cached", c.ran, c.cached));
+            format!("Items: {}.\n", parts.collect::<Vec<_>>().join("; "))
+        }
+    };
+    if !outcome.failures.is_empty() {
+        text += &format!("\nCould not be done ({}):\n", outcome.failures.len());
+        for failure in &outcome.failures {
+            text += &format!("  {}: {}\n", failure.item, failure.message);
+        }
+    }
+    let at = |name: &str| {
+        let path = study.output.join(name);
+        let shown =
+            std::env::current_dir().ok().and_then(|here| path.strip_prefix(here).ok().map(Path::to_owned));
+        slashes(shown.as_deref().unwrap_or(&path))
+    };
+    text += &format!("\nPoses   {}\n", at("poses.csv"));
+    if outcome.frames.iter().any(|f| !f.overlays.is_empty()) {
+        text += &format!("Overlays {}\n", at("overlays"));
+    }
+    text + &format!("Report  {}\n", at("report.html"))
+}
+
+fn status(study: &Study) -> Ended {
+    let path = study.output.join("poses.csv");
+    if path.is_file() {
+        let rows = summary::of_file(&path).map_err(|e| (End::BadInput, e.to_string()))?;
+        print(&summary::table(&rows));
+        let of = |verdict: &str| rows.iter().filter(|r| r.verdict == verdict).count();
+        print(&format!(
+            "\n{} good, {} doubtful, {} failed ({})\n",
+            of("good"),
+            of("doubtful"),
+            of("failed"),
+            study.relative(&path)
+        ));
+    } else {
+        print("no results yet: `biplane run` makes them\n");
+    }
+    let Size { entries, bytes } = Store::open(&study.hidden()).and_then(|s| s.size()).map_err(internal)?;
+    print(&format!("store: {entries} entries, {}\n", megabytes(bytes)));
+    Ok(End::Good)
+}
+
+fn look_failed(error: LookError) -> (End, String) {
+    let end = if matches!(error, LookError::Inputs(_)) { End::BadInput } else { End::Internal };
+    (end, error.to_string())
+}
+
+fn internal(error: impl std::fmt::Display) -> (End, String) {
+    (End::Internal, error.to_string())
+}
+
+fn megabytes(bytes: u64) -> String {
+    format!("{:.1} MB", bytes as f64 / 1e6)
+}
+
+/// To stdout; a reader that went away (`| head`) is no error.
+fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,362 @@
+//! `biplane init`: looks at a folder of data and writes a commented `pipeline.toml` for it.
+//!
+//! What files are is told by what they hold; which belong together is guessed from names, and the file says so. An
+//! existing file is never overwritten.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::{Read, Write as _};
+use std::path::{Path, PathBuf};
+
+use biplane_acquisition::calibration::CalibrationFormat;
+use biplane_acquisition::images::{ImageFile, ImageFormat};
+use biplane_acquisition::meshes::{LengthUnit, read_mesh};
+
+use crate::diagnostics::slashes;
+use crate::tables::{EXAMPLE_HEADER, PoseTable};
+
+/// Folders deeper than this are not looked into.
+const DEPTH: usize = 5;
+/// Files looked at.
+const MOST_FILES: usize = 100_000;
+/// Text files larger than this are neither calibration nor starts.
+const MOST_TEXT: u64 = 16 << 20;
+
+/// Why no file was written.
+#[derive(Debug, thiserror::Error)]
+pub enum InitError {
+    /// There is one already.
+    #[error("{path} is there already and is left as it is; rename it to have a new one written")]
+    Exists {
+        /// The file.
+        path: String,
+    },
+    /// The folder cannot be read or written.
+    #[error("{path}: {source}")]
+    Io {
+        /// The folder or file.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// What lies in a folder, paths relative to it with forward slashes.
+#[derive(Debug, Default)]
+struct Found {
+    /// Folder, and how many pictures it holds.
+    pictures: BTreeMap<String, usize>,
+    /// Files with several pictures each.
+    films: Vec<String>,
+    calibrations: Vec<(String, CalibrationFormat)>,
+    distortions: Vec<String>,
+    /// File, unit that gives a plausible size, bytes.
+    meshes: Vec<(String, Option<LengthUnit>, u64)>,
+    starts: Vec<String>,
+    files: usize,
+}
+
+/// A recording: its name, and each view's name and pictures.
+type Trial = (String, Vec<(String, String)>);
+
+/// Looks at `folder`, writes `folder/pipeline.toml`, and says what was found and what is missing.
+///
+/// # Errors
+/// See [`InitError`].
+pub fn init(folder: &Path) -> Result<String, InitError> {
+    let path = folder.join("pipeline.toml");
+    let shown = slashes(&path);
+    if path.exists() {
+        return Err(InitError::Exists { path: shown });
+    }
+    let io = |path: &Path| {
+        let path = slashes(path);
+        move |source| InitError::Io { path, source }
+    };
+    let mut found = Found::default();
+    look_into(folder, folder, DEPTH, &mut found).map_err(io(folder))?;
+    let name = std::path::absolute(folder)
+        .ok()
+        .and_then(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()));
+    let (text, missing) = compose(&found, name.as_deref().unwrap_or("study"));
+    let create = std::fs::File::options().write(true).create_new(true).open(&path);
+    create.and_then(|mut file| file.write_all(text.as_bytes())).map_err(io(&path))?;
+    let mut said = format!(
+        "wrote {shown}: looked at {} files, found {} folder(s) of pictures, {} calibration(s), {} mesh(es), {} table(s) of \
+         start poses\n",
+        found.files,
+        found.pictures.len() + found.films.len(),
+        found.calibrations.len(),
+        found.meshes.len(),
+        found.starts.len()
+    );
+    for line in &missing {
+        let _ = writeln!(said, "missing: {line}");
+    }
+    let _ = writeln!(
+        said,
+        "Read it through (which file is which was guessed from names), then: biplane run {shown}"
+    );
+    Ok(said)
+}
+
+fn look_into(root: &Path, folder: &Path, depth: usize, found: &mut Found) -> std::io::Result<()> {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)?.flatten().map(|e| e.path()).collect();
+    entries.sort();
+    for path in entries {
+        let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let hidden = name.starts_with('.') || ["results", "edits", "truth"].contains(&name.as_str());
+        if hidden || found.files >= MOST_FILES {
+            continue;
+        }
+        if path.is_dir() {
+            // A folder that may not be read is passed over; the one that was named is not.
+            if depth > 0
+                && let Err(error) = look_into(root, &path, depth - 1, found)
+            {
+                tracing::warn!("{}: {error}", path.display());
+            }
+        } else {
+            found.files += 1;
+            look_at(root, &path, found);
+        }
+    }
+    Ok(())
+}
+
+fn look_at(root: &Path, path: &Path, found: &mut Found) {
+    let relative = |p: &Path| slashes(p.strip_prefix(root).unwrap_or(p));
+    let mut start = Vec::new();
+    let Ok(file) = std::fs::File::open(path) else { return };
+    let bytes = file.metadata().map_or(0, |m| m.len());
+    if file.take(4096).read_to_end(&mut start).is_err() {
+        return;
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if let Some(format) = ImageFormat::of_start(&start) {
+        let several = matches!(format, ImageFormat::Tiff | ImageFormat::Dicom)
+            && ImageFile::open(path).is_ok_and(|f| f.info().frames > 1);
+        if several {
+            found.films.push(relative(path));
+        } else {
+            *found.pictures.entry(relative(path.parent().unwrap_or(root))).or_default() += 1;
+        }
+    } else if extension == "stl" {
+        let unit = LengthUnit::ALL.into_iter().find(|unit| {
+            read_mesh(path, *unit).is_ok_and(|m| {
+                let (low, high) = m.model.0.bounding_box();
+                (10.0..=1000.0).contains(&(high - low).norm())
+            })
+        });
+        found.meshes.push((relative(path), unit, bytes));
+    } else if bytes <= MOST_TEXT && ["txt", "csv", "json", ""].contains(&extension.as_str()) {
+        if String::from_utf8_lossy(&start).contains("distorted_x_px") {
+            found.distortions.push(relative(path));
+        } else if let Some(format) =
+            std::fs::read_to_string(path).ok().and_then(|t| CalibrationFormat::of_text(&t))
+        {
+            found.calibrations.push((relative(path), format));
+        } else if extension == "csv" && PoseTable::read(path).is_ok() {
+            found.starts.push(relative(path));
+        }
+    }
+}
+
+/// Whether a file's name speaks of a view: one of its words is the view's name.
+fn speaks_of(path: &str, view: &str) -> bool {
+    let stem = path.rsplit('/').next().unwrap_or(path).to_lowercase();
+    let view = view.to_lowercase();
+    stem.split(|c: char| !c.is_alphanumeric()).any(|word| word == view)
+}
+
+fn last(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+fn stem(path: &str) -> &str {
+    last(path).rsplit_once('.').map_or(last(path), |(stem, _)| stem)
+}
+
+/// A name that can be a folder and a column.
+fn plain(name: &str) -> String {
+    let name: String =
+        name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
+    if name.is_empty() { "unnamed".to_owned() } else { name }
+}
+
+/// Folders of pictures (or files with many) that lie side by side are the views of one trial.
+fn trials(found: &Found) -> Vec<Trial> {
+    let mut groups: BTreeMap<String, Vec<(String, String)>> = BTreeMap::new();
+    let single = found.pictures.iter().filter(|(folder, _)| !folder.to_lowercase().contains("calib"));
+    for path in single.map(|(folder, _)| folder.as_str()).chain(found.films.iter().map(String::as_str)) {
+        let parent = path.rsplit_once('/').map_or("", |(parent, _)| parent);
+        let view = if found.films.iter().any(|f| f == path) { stem(path) } else { last(path) };
+        groups
+            .entry(parent.to_owned())
+            .or_default()
+            .push((plain(view), if path.is_empty() { "." } else { path }.to_owned()));
+    }
+    let several = groups.values().any(|views| views.len() > 1);
+    groups
+        .into_iter()
+        .filter(|(_, views)| views.len() > 1 || !several)
+        .map(|(parent, views)| {
+            let name = match last(&parent) {
+                "" | "frames" | "images" | "trials" => "trial1".to_owned(),
+                other => plain(other),
+            };
+            (name, views)
+        })
+        .collect()
+}
+
+/// The file's text, and what it lacks.
+fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
+    let mut missing = Vec::new();
+    let trials = trials(found);
+    let views: Vec<String> =
+        trials.first().map_or_else(Vec::new, |(_, v)| v.iter().map(|(n, _)| n.clone()).collect());
+    let mut out = String::from(
+        "# Written by `biplane init` from what lies in this folder. Which file is which was guessed from names: check it.\n\
+         # Paths are relative to this file. All keys and defaults: docs/pipeline-reference.md, or `biplane schema`.\n\n[study]\n",
+    );
+    let _ = writeln!(out, "name = {}\n", quoted(name));
+    if views.is_empty() {
+        missing.push("pictures: no folder of images, and no file with many, was found".to_owned());
+    }
+    for view in &views {
+        let own = found.calibrations.iter().find(|(path, format)| match format {
+            CalibrationFormat::MayaCam2 => speaks_of(path, view),
+            CalibrationFormat::PlaneJson => true,
+        });
+        let _ = writeln!(out, "[fluoroscope.{view}]");
+        match own {
+            Some((path, format)) => {
+                let _ = writeln!(out, "calibration = {}", quoted(path));
+                if *format == CalibrationFormat::MayaCam2 {
+                    out += "pixel_origin = \"centre\"   # or \"corner\": where the file counts pixels from; it does not say\n";
+                }
+            }
+            None => {
+                missing.push(format!(
+                    "a calibration of view {view} (MayaCam 2.0 text with `{view}` in its name)"
+                ));
+                out += "calibration = \"FILL IN\"     # MayaCam 2.0 text as XMALab writes it, or source-and-plane JSON\n";
+            }
+        }
+        match found.distortions.iter().find(|path| speaks_of(path, view)) {
+            Some(path) => {
+                let _ = writeln!(out, "distortion = {}", quoted(path));
+            }
+            None => out += "# distortion = \"...\"        # only if the pictures are not corrected\n",
+        }
+        out.push('\n');
+    }
+    compose_bodies(found, &mut out, &mut missing);
+    for (trial, pictures) in &trials {
+        let names: Vec<&String> = pictures.iter().map(|(n, _)| n).collect();
+        if names != views.iter().collect::<Vec<_>>() {
+            let _ = writeln!(out, "# {trial}: its views are {names:?}, not those above; left out\n");
+            continue;
+        }
+        let list: Vec<String> =
+            pictures.iter().map(|(view, path)| format!("{view} = {}", quoted(path))).collect();
+        let _ = writeln!(out, "[[trial]]\nname = {}\nframes = {{ {} }}", quoted(trial), list.join(", "));
+        out += "pair_by = \"number\"          # the number in the files' names; or \"index\", the place in the list\n\
+                offset = 0                  # the second view's number minus the first one's\n\
+                # frame_rate_hz = 100.0\n";
+        match found.starts.as_slice() {
+            [] => out += "# starts = \"starts.csv\"     # a few frames are enough; see below\n\n",
+            [first, others @ ..] => {
+                let _ = writeln!(out, "starts = {}", quoted(first));
+                for other in others {
+                    let _ = writeln!(out, "# starts = {}", quoted(other));
+                }
+                out.push('\n');
+            }
+        }
+    }
+    if found.starts.is_empty() {
+        missing.push(format!(
+            "start poses: a CSV with the columns {EXAMPLE_HEADER}, at least one row for each body"
+        ));
+        let _ = writeln!(
+            out,
+            "# Start poses: one row a body and frame, world_from_model in mm, unit quaternion with its scalar first:\n\
+             #   {EXAMPLE_HEADER}\n# Frames without a row start between those that have one.\n"
+        );
+    }
+    out += "[segment]                   # how edges are found\n\n[match]                     # how poses are found\n\n\
+            [output]\nfolder = \"results\"\n";
+    (out, missing)
+}
+
+/// One table a mesh; of meshes that differ by a number at the end only the largest, the others as comments.
+fn compose_bodies(found: &Found, out: &mut String, missing: &mut Vec<String>) {
+    let mut bodies: BTreeMap<String, Vec<&(String, Option<LengthUnit>, u64)>> = BTreeMap::new();
+    for mesh in &found.meshes {
+        let base = stem(&mesh.0).trim_end_matches(|c: char| c.is_ascii_digit() || "_-. ".contains(c));
+        bodies.entry(plain(if base.is_empty() { stem(&mesh.0) } else { base })).or_default().push(mesh);
+    }
+    if bodies.is_empty() {
+        missing.push("meshes (STL) of the bodies".to_owned());
+        *out += "[[body]]\nname = \"femur\"\nmesh = \"FILL IN\"\n\n";
+    }
+    for (name, mut meshes) in bodies {
+        meshes.sort_by_key(|(path, _, bytes)| (std::cmp::Reverse(*bytes), path.clone()));
+        for (place, (path, unit, _)) in meshes.into_iter().enumerate() {
+            if place > 0 {
+                let _ = writeln!(out, "# mesh = {}", quoted(path));
+                continue;
+            }
+            let _ = writeln!(out, "[[body]]\nname = {}\nmesh = {}", quoted(&name), quoted(path));
+            match unit {
+                Some(unit) => {
+                    let _ =
+                        writeln!(out, "units = \"{}\"                # guessed from its size", unit.name());
+                }
+                None => missing
+                    .push(format!("a usable mesh in {path}: `biplane inspect` says what is wrong with it")),
+            }
+        }
+        out.push('\n');
+    }
+}
+
+/// A TOML text.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_side_by_side_are_one_trial_and_calibration_pictures_are_none() {
+        let mut found = Found::default();
+        for (folder, count) in [("calibration", 4), ("frames/A", 12), ("frames/B", 12), ("other", 1)] {
+            found.pictures.insert(folder.to_owned(), count);
+        }
+        found.calibrations = vec![("calibration/a.txt".to_owned(), CalibrationFormat::MayaCam2)];
+        found.meshes = vec![
+            ("models/tray_3500.stl".to_owned(), Some(LengthUnit::Millimetres), 1),
+            ("models/tray_15000.stl".to_owned(), Some(LengthUnit::Millimetres), 2),
+        ];
+        let (text, missing) = compose(&found, "my \"knee\"");
+        assert!(text.contains("frames = { A = \"frames/A\", B = \"frames/B\" }"), "{text}");
+        assert!(
+            text.contains("mesh = \"models/tray_15000.stl\"")
+                && text.contains("# mesh = \"models/tray_3500.stl\"")
+        );
+        assert_eq!(missing.len(), 2, "calibration of B and starts: {missing:?}");
+        let file: Result<crate::config::PipelineFile, _> = toml::from_str(&text);
+        assert!(file.is_ok(), "{text}\n{file:?}");
+    }
+
+    #[test]
+    fn a_view_is_a_word_of_a_file_name() {
+        assert!(speaks_of("calibration/cam1.mayacam2.txt", "cam1") && speaks_of("x/distortion_A.csv", "a"));
+        assert!(!speaks_of("cam10.txt", "cam1"));
+    }
+}
