@@ -364,7 +364,7 @@ impl Place<'_> {
                     rgb: [pixel[0], pixel[1], pixel[2]],
                 });
             }
-            if channels % 2 == 0 && pixel[channels - 1] != opaque {
+            if channels.is_multiple_of(2) && pixel[channels - 1] != opaque {
                 return Err(self.unsupported("partly transparent", "save it without transparency"));
             }
             grey.push(pixel[0]);

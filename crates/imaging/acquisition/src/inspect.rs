@@ -1,1 +1,265 @@
-//! placeholder
+//! Says what a laboratory's file holds, and in which convention, for a person to read.
+//!
+//! The kind is told by content. Nothing of a DICOM header but what describes the pixels is shown.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use biplane_artifact::{Calibration, DistortionTable, Frame, PixelOrigin};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::calibration::{
+    CalibrationError, CalibrationFormat, is_distortion_csv, plane_views, read_calibration,
+    read_distortion_csv, read_text,
+};
+use crate::frames::{FramesError, list_frames};
+use crate::images::{ImageError, ImageFile, ImageFormat, ImageInfo};
+use crate::meshes::{LengthUnit, MeshFile, MeshFileError, check_size, is_stl, read_unscaled};
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Description {
+    /// What it is, in a few words.
+    pub kind: String,
+    /// What is measured or stated, and its value with its unit.
+    pub lines: Vec<(String, String)>,
+}
+
+impl Description {
+    fn new(kind: impl Into<String>) -> Self {
+        Self { kind: kind.into(), lines: Vec::new() }
+    }
+
+    fn line(&mut self, label: impl Into<String>, value: impl Into<String>) {
+        self.lines.push((label.into(), value.into()));
+    }
+}
+
+impl std::fmt::Display for Description {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let width = self.lines.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
+        write!(f, "{}", self.kind)?;
+        for (label, value) in &self.lines {
+            write!(f, "\n  {label:width$}  {value}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a file could not be described.
+#[derive(Debug, thiserror::Error)]
+pub enum InspectError {
+    /// The operating system said no.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// None of the kinds known.
+    #[error(
+        "{} is none of the files this program reads: images (PNG, TIFF, DICOM, JPEG, BMP), calibrations (MayaCam 2.0, \
+         detector plane as JSON, distortion as CSV), meshes (STL)", path.display()
+    )]
+    Unknown {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An image that cannot be read.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// A folder of images that cannot be listed.
+    #[error(transparent)]
+    Frames(#[from] FramesError),
+    /// A calibration that cannot be read.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    /// A mesh that cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MeshFileError),
+}
+
+/// Describes a file, or a folder of images.
+///
+/// # Errors
+/// The file cannot be read, is of no known kind, or is damaged.
+pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
+    let path = path.as_ref();
+    let io = |source| InspectError::Io { path: path.to_owned(), source };
+    if path.is_dir() {
+        return folder(path);
+    }
+    let mut file = File::open(path).map_err(io)?;
+    let length = file.metadata().map_err(io)?.len();
+    let mut start = Vec::new();
+    file.by_ref().take(4096).read_to_end(&mut start).map_err(io)?;
+    drop(file);
+    if ImageFormat::of_start(&start).is_some() {
+        return image(path);
+    }
+    if is_stl(&start, length) {
+        return mesh(path);
+    }
+    let unknown = || InspectError::Unknown { path: path.to_owned() };
+    match read_text(path) {
+        Ok(text) => match CalibrationFormat::of_text(&text) {
+            Some(CalibrationFormat::MayaCam2) => maya_cam(path),
+            Some(CalibrationFormat::PlaneJson) => planes(path, &text),
+            None if is_distortion_csv(&text) => Ok(distortion(&read_distortion_csv(path)?)),
+            None => Err(unknown()),
+        },
+        Err(CalibrationError::Io { source, .. }) => Err(io(source)),
+        // Not text, so the last chance is a binary mesh, whose reader says what is wrong with it.
+        Err(_) => match read_unscaled(path) {
+            Ok(_) => mesh(path),
+            Err(error @ MeshFileError::Truncated { .. }) => Err(error.into()),
+            Err(_) => Err(unknown()),
+        },
+    }
+}
+
+fn folder(path: &Path) -> Result<Description, InspectError> {
+    let frames = list_frames(path, "")?;
+    let mut d = Description::new("folder of images");
+    d.line("frames", frames.len().to_string());
+    if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
+        d.line("first, last", format!("{}, {}", first.label, last.label));
+        let mut file = ImageFile::open(&first.path)?;
+        let frame = file.frame(first.index_in_file)?;
+        image_lines(&mut d, file.info(), &frame);
+    }
+    Ok(d)
+}
+
+fn image(path: &Path) -> Result<Description, InspectError> {
+    let mut file = ImageFile::open(path)?;
+    let frame = file.frame(0)?;
+    let info = file.info();
+    let mut d = Description::new(format!("{} image", info.format.name()));
+    d.line("frames", info.frames.to_string());
+    image_lines(&mut d, info, &frame);
+    let rate =
+        info.rate_hz.map_or("not stated in the file".to_owned(), |r| format!("{r:.3} frames a second"));
+    d.line("rate", rate);
+    Ok(d)
+}
+
+fn image_lines(d: &mut Description, info: &ImageInfo, frame: &Frame) {
+    d.line("size", format!("{} x {} px (columns x rows)", info.width, info.height));
+    d.line("bits", frame.bits.to_string());
+    let (min, max) = frame.samples.iter().fold((u16::MAX, 0), |(a, b), &s| (a.min(s), b.max(s)));
+    let mean = frame.samples.iter().map(|&s| f64::from(s)).sum::<f64>() / frame.samples.len().max(1) as f64;
+    d.line("levels of the first frame", format!("{min} to {max}, mean {mean:.1}; larger is brighter"));
+}
+
+fn maya_cam(path: &Path) -> Result<Description, InspectError> {
+    let mut d = Description::new("calibration, MayaCam 2.0 (one fluoroscope)");
+    let calibration = read_calibration(path, "", PixelOrigin::Centre)?;
+    camera(&mut d, "", &calibration);
+    d.line("distance of source and detector", "not in this format");
+    d.line(
+        "pixel origin",
+        "not in this format: shown as if the centre of the first pixel were (0, 0); `pixel_origin` sets it",
+    );
+    Ok(d)
+}
+
+fn planes(path: &Path, text: &str) -> Result<Description, InspectError> {
+    let views = plane_views(path, text)?;
+    let mut d = Description::new("calibration, source and detector plane as JSON");
+    d.line("fluoroscopes", views.join(", "));
+    d.line("pixel origin", "does not matter in this format: it gives the middle of the picture");
+    for view in views {
+        let calibration = read_calibration(path, &view, PixelOrigin::Centre)?;
+        camera(&mut d, &format!("{view}: "), &calibration);
+    }
+    Ok(d)
+}
+
+/// Takes `matrix = K R` apart again: `w` is a depth, so the third row is the unit normal.
+fn camera(d: &mut Description, prefix: &str, calibration: &Calibration) {
+    let Calibration { size, source, matrix, distortion } = calibration;
+    let m = Matrix3::from_fn(|i, j| matrix[i][j]);
+    let rows = [0, 1, 2].map(|i| m.row(i).transpose());
+    let normal: Vector3<f64> = rows[2];
+    let (cx, cy) = (rows[0].dot(&normal), rows[1].dot(&normal));
+    let y = rows[1] - normal * cy;
+    let fy = y.norm();
+    let x = rows[0] - normal * cx;
+    let skew = x.dot(&y) / fy;
+    let fx = (x - y * (skew / fy)).norm();
+    let triple =
+        |v: &[f64; 3], digits: usize| format!("({:.digits$}, {:.digits$}, {:.digits$})", v[0], v[1], v[2]);
+    let mut line = |label: &str, value: String| d.line(format!("{prefix}{label}"), value);
+    line("size", format!("{} x {} px (columns x rows)", size[0], size[1]));
+    let far = Vector3::from(*source).norm();
+    line("source", format!("{} mm, {far:.1} mm from the laboratory's origin", triple(source, 3)));
+    line(
+        "viewing direction",
+        format!("{} (from the source, at right angles to the detector)", triple(&normal.into(), 4)),
+    );
+    line("focal length", format!("{fx:.2} x {fy:.2} px, skew {skew:.3}"));
+    line("principal point", format!("({cx:.3}, {cy:.3}) px, the centre of the first pixel being (0, 0)"));
+    line(
+        "picture",
+        if m.determinant() > 0.0 {
+            "as seen from the source"
+        } else {
+            "mirrored: as seen from behind the detector"
+        }
+        .to_owned(),
+    );
+    let corrected = match distortion {
+        None => "none: pictures must be corrected already".to_owned(),
+        Some(t) => format!("in the file, sampled here on {} x {} points", t.count[0], t.count[1]),
+    };
+    line("distortion", corrected);
+}
+
+fn distortion(table: &DistortionTable) -> Description {
+    let DistortionTable { first_px, step_px, count, ideal_px } = table;
+    let mut d = Description::new("distortion samples (CSV): recorded to ideal pixels");
+    let last = [0, 1].map(|i| first_px[i] + step_px[i] * (count[i] - 1) as f64);
+    d.line(
+        "grid",
+        format!("{} x {} samples every {:.3} x {:.3} px", count[0], count[1], step_px[0], step_px[1]),
+    );
+    d.line("covers", format!("({}, {}) to ({}, {}) px", first_px[0], first_px[1], last[0], last[1]));
+    let moved = ideal_px.iter().enumerate().map(|(i, ideal)| {
+        let x = first_px[0] + step_px[0] * (i % count[0]) as f64;
+        let y = first_px[1] + step_px[1] * (i / count[0]) as f64;
+        (ideal[0] - x).hypot(ideal[1] - y)
+    });
+    d.line("largest shift", format!("{:.2} px", moved.fold(0.0, f64::max)));
+    d.line("pixel origin", "centre of the first pixel at (0, 0)");
+    d
+}
+
+fn mesh(path: &Path) -> Result<Description, InspectError> {
+    let raw = read_unscaled(path)?;
+    let MeshFile { model, encoding, triangles_in_file, topology, notes } = &raw;
+    let mesh = &model.0;
+    let mut d = Description::new(format!("mesh, {}", encoding.name()));
+    d.line("triangles", triangles_in_file.to_string());
+    d.line("vertices", mesh.vertices().len().to_string());
+    let (low, high) = mesh.bounding_box();
+    let size = high - low;
+    d.line("size", format!("{:.4} x {:.4} x {:.4} (mm, if the file is in mm)", size.x, size.y, size.z));
+    if let Err(MeshFileError::Implausible { advice, .. }) = check_size(path, mesh, LengthUnit::Millimetres) {
+        d.line("unit", format!("not mm{advice}"));
+    }
+    d.line("area", format!("{:.6} (mm^2)", mesh.area()));
+    let closed = topology.open_edges == 0;
+    let volume =
+        if closed { format!("{:.6} (mm^3)", mesh.signed_volume()) } else { "none: not closed".to_owned() };
+    d.line("volume", volume);
+    if notes.is_empty() {
+        d.line("surface", "closed, wound outward, one piece");
+    }
+    for note in notes {
+        d.line("note", note.to_string());
+    }
+    Ok(d)
+}

@@ -241,19 +241,20 @@ fn length(mm: f64) -> String {
 pub fn read_mesh(path: impl AsRef<Path>, unit: LengthUnit) -> Result<MeshFile, MeshFileError> {
     let path = path.as_ref();
     let mut file = read_unscaled(path)?;
-    let (low, high) = file.model.0.bounding_box();
-    let raw = (high - low).norm();
-    let diagonal_mm = raw * unit.millimetres();
-    if !PLAUSIBLE_MM.contains(&diagonal_mm) {
-        return Err(MeshFileError::Implausible {
-            path: path.to_owned(),
-            diagonal_mm,
-            unit,
-            advice: unit_advice(raw),
-        });
-    }
+    check_size(path, &file.model.0, unit)?;
     file.model = ModelMesh(file.model.0.scaled(unit.millimetres()));
     Ok(file)
+}
+
+/// Whether a mesh in the file's own unit would be the size of a body, if that unit is `unit`.
+pub(crate) fn check_size(path: &Path, mesh: &Mesh, unit: LengthUnit) -> Result<(), MeshFileError> {
+    let (low, high) = mesh.bounding_box();
+    let raw = (high - low).norm();
+    let diagonal_mm = raw * unit.millimetres();
+    if PLAUSIBLE_MM.contains(&diagonal_mm) {
+        return Ok(());
+    }
+    Err(MeshFileError::Implausible { path: path.to_owned(), diagonal_mm, unit, advice: unit_advice(raw) })
 }
 
 /// Which units would make a body of it.

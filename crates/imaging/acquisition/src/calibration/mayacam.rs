@@ -137,7 +137,7 @@ pub(super) fn parse(path: &Path, text: &str, origin: PixelOrigin) -> Result<Cali
         }
     }
 
-    if size.iter().any(|&s| s < 1.0 || s > MAX_SIDE || s.fract() != 0.0) {
+    if size.iter().any(|&s| !(1.0..=MAX_SIDE).contains(&s) || s.fract() != 0.0) {
         return Err(value(format!(
             "image size {} x {}; expected whole numbers from 1 to {MAX_SIDE}",
             size[0], size[1]
