@@ -80,6 +80,8 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
         let item = steps.item(job, &study.bodies[*body].name);
         let (fate, line) = if fails {
             (Fate::Fails, format!("{MATCH}/{item}: cannot run, a picture of its frame fails"))
+        } else if curves.len() < job.pictures.len() && !steps.ever_made(MATCH, &item) {
+            (Fate::Runs, format!("{MATCH}/{item}: never ran"))
         } else if curves.len() < job.pictures.len() {
             (Fate::Follows, format!("{MATCH}/{item}: runs if its curves come out differently"))
         } else {

@@ -66,6 +66,11 @@ impl Steps<'_> {
         (view, self.prepared.study.views[view].name.as_str())
     }
 
+    /// Whether an item has ever had an output.
+    pub fn ever_made(&self, step: &str, item: &Item) -> bool {
+        self.store.link_path(step, item).symlink_metadata().is_ok()
+    }
+
     /// What is known of a picture; its size must be that of the view's calibration.
     ///
     /// # Errors

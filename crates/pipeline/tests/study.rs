@@ -1,0 +1,150 @@
+//! A whole study through the program: results, caching, edits, failures that stop nothing else.
+
+mod scene;
+
+use scene::{HEADER, SIZE, Scene, row, truth};
+
+/// A column of `results/poses.csv`.
+fn column(scene: &Scene, name: &str) -> Vec<String> {
+    let mut reader = csv::Reader::from_path(scene.path("results/poses.csv")).unwrap();
+    let at = reader.headers().unwrap().iter().position(|h| h == name).unwrap();
+    reader.records().map(|r| r.unwrap()[at].to_owned()).collect()
+}
+
+fn number(scene: &Scene, name: &str, row: usize) -> f64 {
+    column(scene, name)[row].parse().unwrap()
+}
+
+#[test]
+fn images_become_poses_and_a_second_run_does_nothing() {
+    let scene = Scene::new();
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}{err}");
+    for frame in 0..3 {
+        let (_, t) = truth(frame);
+        for (name, expected) in [("tx_mm", t.x), ("ty_mm", t.y), ("tz_mm", t.z)] {
+            // Drawn with edges of a pixel (0.5 mm) in 8 bits: a tenth of a pixel is what can be asked.
+            let found = number(&scene, name, frame);
+            assert!((found - expected).abs() < 0.05, "frame {frame} {name}: {found}, expected {expected}");
+        }
+    }
+    assert_eq!(column(&scene, "start"), ["file", "interpolated", "file"]);
+    assert_eq!(column(&scene, "time_s"), ["0.000000", "0.100000", "0.200000"]);
+    assert!(err.contains("1 of 3 frames start between the poses given for others"), "{err}");
+    assert!(scene.read("results/report.html").contains("1 of 3 frames start between"));
+    let before: Vec<_> = ["poses.csv", "report.html"].map(|f| scene.read(&format!("results/{f}"))).into();
+    let written = std::fs::metadata(scene.path("results/poses.csv")).unwrap().modified().unwrap();
+
+    // Pictures that cannot be opened any more show that none is opened.
+    let index = scene.read(".biplane/inputs.json");
+    assert!(index.contains("frames/A/0000.png#0"), "{index}");
+    let (code, again, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 0);
+    assert!(again.contains("Nothing to do: 9 items cached."), "{again}");
+    let table = |text: &str| text.split("\n\n").next().unwrap().to_owned();
+    assert_eq!(table(&out), table(&again));
+    let after: Vec<_> = ["poses.csv", "report.html"].map(|f| scene.read(&format!("results/{f}"))).into();
+    assert_eq!(before, after);
+    assert_eq!(std::fs::metadata(scene.path("results/poses.csv")).unwrap().modified().unwrap(), written);
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 9 items are cached\n");
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let results = ["1", "4"].map(|threads| {
+        let scene = Scene::new();
+        assert_eq!(scene.biplane(&["run", "--threads", threads]).0, 0);
+        (scene.read("results/poses.csv"), scene.read("results/report.html"))
+    });
+    assert_eq!(results[0], results[1]);
+}
+
+#[test]
+fn an_edit_wins_over_a_start_and_runs_only_its_frame() {
+    let scene = Scene::new();
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    scene.write("edits/poses.csv", format!("{HEADER}{}", row(2, 0.5)).as_bytes());
+    let (_, why, _) = scene.biplane(&["explain"]);
+    // Frame 1 starts halfway between 0 and 2, so it changes too.
+    assert_eq!(why, "match/squat/0001/box: input start changed\nmatch/squat/0002/box: input start changed\n");
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("segment 0 run, 6 cached; match 2 run, 1 cached"), "{out}");
+    assert_eq!(column(&scene, "start"), ["file", "interpolated", "edit"]);
+    assert_eq!(scene.read("edits/poses.csv"), format!("{HEADER}{}", row(2, 0.5)));
+}
+
+#[test]
+fn a_changed_parameter_is_explained_and_a_comment_is_none() {
+    let scene = Scene::new();
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    scene.edit("search_px = 20.0", "# as far as starts are wrong\nsearch_px = 20.0\nseed = 1");
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 9 items are cached\n");
+    scene.edit("search_px = 20.0", "search_px = 25.0");
+    let (_, why, _) = scene.biplane(&["explain", "0001"]);
+    assert_eq!(why, "match/squat/0001/box: parameter search_px changed from 20 to 25\n");
+    assert!(scene.biplane(&["plan"]).1.contains("match         0       3"), "{}", scene.biplane(&["plan"]).1);
+}
+
+#[test]
+fn bad_pictures_stop_only_their_frames() {
+    let scene = Scene::new();
+    let small = image::GrayImage::new(200, 256);
+    let mut png = std::io::Cursor::new(Vec::new());
+    small.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    scene.write("frames/A/0001.png", png.get_ref());
+    let whole = std::fs::read(scene.path("frames/B/0002.png")).unwrap();
+    scene.write("frames/B/0002.png", &whole[..whole.len() / 2]);
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 1, "{out}");
+    let size = format!(
+        "segment/squat/0001/A: frames/A/0001.png: 200 x 256 pixels, but the calibration of view A (A.txt) is for {SIZE} x {SIZE}"
+    );
+    assert!(out.contains(&size), "{out}");
+    assert!(out.contains("segment/squat/0002/B: frames/B/0002.png"), "{out}");
+    assert_eq!(column(&scene, "verdict"), ["good", "failed", "failed"]);
+    assert_eq!(column(&scene, "reason")[1], "not matched: segment/squat/0001/A failed");
+    assert!(scene.read("results/report.html").contains("Could not be done (2)"));
+    // Mended, only what was missing runs.
+    scene.write("frames/B/0002.png", &whole);
+    let (_, out, _) = scene.biplane(&["run"]);
+    assert!(out.contains("segment 1 run, 4 cached; match 1 run, 1 cached"), "{out}");
+}
+
+#[test]
+fn a_start_far_off_ends_in_a_verdict_and_a_code() {
+    let scene = Scene::new();
+    scene.write("starts.csv", format!("{HEADER}{}", row(0, 40.0)).as_bytes());
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 1, "{out}");
+    assert!(column(&scene, "verdict").contains(&"failed".to_owned()), "{out}");
+    assert_eq!(scene.biplane(&["status"]).0, 0);
+}
+
+#[test]
+fn results_can_be_starts_and_are_shown_by_status() {
+    let scene = Scene::new();
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    scene.edit("starts.csv", "results/poses.csv");
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}");
+    assert_eq!(column(&scene, "start"), ["file", "file", "file"]);
+    let (_, status, _) = scene.biplane(&["status"]);
+    assert!(status.contains("3 good, 0 doubtful, 0 failed (results/poses.csv)"), "{status}");
+    let (_, cleaned, _) = scene.biplane(&["clean"]);
+    assert!(cleaned.starts_with("freed 3 entries"), "{cleaned}");
+}
+
+#[test]
+fn init_writes_a_file_that_runs_and_never_overwrites_one() {
+    let scene = Scene::new();
+    let (code, _, said) = scene.biplane(&["init"]);
+    assert_eq!(code, 2);
+    assert!(said.contains("is there already"), "{said}");
+    std::fs::remove_file(scene.path("pipeline.toml")).unwrap();
+    assert_eq!(scene.biplane(&["init", "."]).0, 0);
+    let starts = scene.read("starts.csv").replace("squat", "trial1");
+    scene.write("starts.csv", starts.as_bytes());
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}{err}\n{}", scene.read("pipeline.toml"));
+}
