@@ -312,11 +312,11 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
             std::env::current_dir().ok().and_then(|here| path.strip_prefix(here).ok().map(Path::to_owned));
         slashes(shown.as_deref().unwrap_or(&path))
     };
-    text += &format!("\nPoses   {}\n", at("poses.csv"));
+    text += &format!("\nPoses    {}\n", at("poses.csv"));
     if outcome.frames.iter().any(|f| !f.overlays.is_empty()) {
         text += &format!("Overlays {}\n", at("overlays"));
     }
-    text + &format!("Report  {}\n", at("report.html"))
+    text + &format!("Report   {}\n", at("report.html"))
 }
 
 fn status(study: &Study) -> Ended {

@@ -11,6 +11,7 @@ pub mod init;
 pub mod logging;
 pub mod look;
 pub mod outcome;
+pub mod overlay;
 pub mod prepare;
 pub mod reference;
 pub mod report;

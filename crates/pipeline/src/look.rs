@@ -1,10 +1,10 @@
 //! What a run would do, without doing it: `plan` and `explain`.
 
-use biplane_stage::{Context, Store, StoreError};
+use biplane_stage::{Context, Explanation, Item, Store, StoreError};
 use rayon::prelude::*;
 
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::steps::{MATCH, SEGMENT, Steps};
+use crate::steps::{ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
 use crate::study::Study;
 use crate::summary::aligned;
 
@@ -76,28 +76,54 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
         looks.push(Look { step: SEGMENT, fate, line });
     }
     let fails = looks.iter().any(|l| l.fate == Fate::Fails);
+    let mut matches = Vec::new();
     for (place, (body, _, _)) in job.bodies.iter().enumerate() {
         let item = steps.item(job, &study.bodies[*body].name);
-        let (fate, line) = if fails {
-            (Fate::Fails, format!("{MATCH}/{item}: cannot run, a picture of its frame fails"))
-        } else if curves.len() < job.pictures.len() && !steps.ever_made(MATCH, &item) {
-            (Fate::Runs, format!("{MATCH}/{item}: never ran"))
-        } else if curves.len() < job.pictures.len() {
-            (Fate::Follows, format!("{MATCH}/{item}: runs if its curves come out differently"))
-        } else {
-            match steps.explain_match(job, place, &curves) {
-                Ok(why) => (if why.cached() { Fate::Cached } else { Fate::Runs }, why.to_string()),
-                Err(error) => (Fate::Fails, format!("{MATCH}/{item}: {}", study.shorten(&error.to_string()))),
-            }
-        };
-        looks.push(Look { step: MATCH, fate, line });
+        let ready = curves.len() == job.pictures.len();
+        looks.push(after(steps, MATCH, &item, fails, ready, || {
+            let (why, stored) = steps.explain_match(job, place, &curves)?;
+            matches.extend(stored.map(|s| s.promise()));
+            Ok(why)
+        }));
+    }
+    for slot in 0..job.pictures.len() {
+        let item = steps.item(job, steps.view(job, slot).1);
+        let ready = matches.len() == job.bodies.len();
+        looks.push(after(steps, OVERLAY, &item, fails, ready, || steps.explain_overlay(job, slot, &matches)));
     }
     looks
 }
 
+/// A look at an item that follows others: `fails` if one of them cannot be done, `ready` if all are in the store.
+fn after(
+    steps: &Steps<'_>,
+    step: &'static str,
+    item: &Item,
+    fails: bool,
+    ready: bool,
+    explain: impl FnOnce() -> Result<Explanation, ItemError>,
+) -> Look {
+    let (fate, line) = if fails {
+        (Fate::Fails, format!("{step}/{item}: cannot run, a picture of its frame fails"))
+    } else if ready {
+        match explain() {
+            Ok(why) => (if why.cached() { Fate::Cached } else { Fate::Runs }, why.to_string()),
+            Err(error) => {
+                let message = steps.prepared.study.shorten(&error.to_string());
+                (Fate::Fails, format!("{step}/{item}: {message}"))
+            }
+        }
+    } else if steps.ever_made(step, item) {
+        (Fate::Follows, format!("{step}/{item}: runs if what it follows comes out differently"))
+    } else {
+        (Fate::Runs, format!("{step}/{item}: never ran"))
+    };
+    Look { step, fate, line }
+}
+
 /// Counts a step.
 pub fn counts(looks: &[Look]) -> String {
-    let rows = [SEGMENT, MATCH].into_iter().map(|step| {
+    let rows = STEPS.into_iter().map(|step| {
         let of = |fate| looks.iter().filter(|l| l.step == step && l.fate == fate).count().to_string();
         vec![step.to_owned(), of(Fate::Cached), of(Fate::Runs), of(Fate::Follows), of(Fate::Fails)]
     });

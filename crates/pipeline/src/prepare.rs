@@ -65,6 +65,8 @@ pub struct Prepared {
     pub segment: ParamsText,
     /// Parameters of the step `match`.
     pub matching: ParamsText,
+    /// Parameters of the step `overlay`: none.
+    pub overlay: ParamsText,
     pictures: Pictures,
 }
 
@@ -189,12 +191,22 @@ impl Prepared {
         }
         let segment = faults.keep(ParamsText::of(&study.segment));
         let matching = faults.keep(ParamsText::of(&study.matching));
+        let overlay = faults.keep(ParamsText::of(&()));
         let warnings = warnings.iter().map(|w| study.shorten(w)).collect();
-        match (segment, matching, faults.list) {
-            (Some(segment), Some(matching), list) if list.is_empty() => {
-                Ok(Self { study, index, calibrations, meshes, jobs, warnings, segment, matching, pictures })
-            }
-            (_, _, list) => Err(InputErrors(list)),
+        match (segment, matching, overlay, faults.list) {
+            (Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => Ok(Self {
+                study,
+                index,
+                calibrations,
+                meshes,
+                jobs,
+                warnings,
+                segment,
+                matching,
+                overlay,
+                pictures,
+            }),
+            (.., list) => Err(InputErrors(list)),
         }
     }
 

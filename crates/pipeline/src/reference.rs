@@ -7,6 +7,9 @@ use serde_json::{Map, Value};
 
 use crate::config::PipelineFile;
 
+/// The tables in the order of a pipeline file: a schema has none.
+const ORDER: [&str; 7] = ["study", "fluoroscope", "body", "trial", "segment", "match", "output"];
+
 /// The JSON Schema, indented, with a newline at its end.
 pub fn schema() -> String {
     let mut text = serde_json::to_string_pretty(&root()).unwrap_or_default();
@@ -23,7 +26,9 @@ pub fn reference() -> String {
          listed here is an\nerror.\n",
     );
     let _ = write!(out, "\n{}\n", description(&root));
-    for (name, property) in properties(&root) {
+    let mut tables: Vec<_> = properties(&root).collect();
+    tables.sort_by_key(|(name, _)| ORDER.iter().position(|o| o == name));
+    for (name, property) in tables {
         let (heading, table) = section(&root, name, property);
         let _ = write!(out, "\n## `{heading}`\n\n{}\n", description(property));
         rows(&root, table, "", &mut out);
@@ -89,7 +94,10 @@ fn rows(root: &Value, table: &Value, prefix: &str, out: &mut String) {
         .flatten()
         .filter_map(Value::as_str)
         .collect();
-    for (key, property) in properties(table) {
+    let mut keys: Vec<_> = properties(table).collect();
+    // A schema has no order: what must be given comes first.
+    keys.sort_by_key(|(key, _)| !required.contains(key));
+    for (key, property) in keys {
         let inner = resolve(root, property);
         if inner.get("properties").is_some() {
             rows(root, inner, &format!("{prefix}{key}."), out);

@@ -6,6 +6,7 @@ use biplane_artifact::Verdict;
 use serde::Serialize;
 
 use crate::outcome::Outcome;
+use crate::overlay::COLOURS;
 use crate::results::UNKNOWN;
 use crate::study::Study;
 
@@ -42,7 +43,7 @@ struct Card {
     anchor: usize,
     frame: String,
     worst: &'static str,
-    bodies: Vec<(String, &'static str, String)>,
+    bodies: Vec<(String, &'static str, String, String)>,
     pictures: Vec<(String, String)>,
 }
 
@@ -102,7 +103,8 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
             let name = study.bodies[body.body].name.clone();
             let verdict = body.verdict();
             worst = worst.max(verdict);
-            bodies.push((name.clone(), verdict.word(), body.reason()));
+            let [r, g, b] = COLOURS[bodies.len() % COLOURS.len()];
+            bodies.push((name.clone(), verdict.word(), body.reason(), format!("#{r:02x}{g:02x}{b:02x}")));
             let found = body.result.as_ref().ok();
             rows.push(Row {
                 anchor,

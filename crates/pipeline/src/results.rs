@@ -46,6 +46,23 @@ pub fn write_if_changed(path: &Path, bytes: &[u8]) -> std::io::Result<bool> {
     Ok(true)
 }
 
+/// Copies a file beside and renames it into place, unless the copy there has its size and time of change already: a run
+/// in which nothing is to do reads no picture, not even these.
+///
+/// # Errors
+/// The operating system refuses.
+pub fn copy_if_other(from: &Path, to: &Path) -> std::io::Result<()> {
+    let about = std::fs::metadata(from)?;
+    let modified = about.modified()?;
+    if std::fs::metadata(to)
+        .is_ok_and(|old| old.len() == about.len() && old.modified().is_ok_and(|m| m == modified))
+    {
+        return Ok(());
+    }
+    write_if_changed(to, &std::fs::read(from)?)?;
+    std::fs::File::options().write(true).open(to)?.set_modified(modified)
+}
+
 /// The header of `poses.csv`.
 fn header(views: &[&str]) -> Vec<String> {
     let mut names: Vec<String> = "trial frame body verdict tx_mm ty_mm tz_mm qw qx qy qz time_s start reason"

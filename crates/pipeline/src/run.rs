@@ -1,12 +1,13 @@
-//! Runs a study: every frame's pictures to curves, curves to poses, then `poses.csv` and the report.
+//! Runs a study: every frame's pictures to curves, curves to poses, poses to overlays, then `poses.csv` and the report.
 //!
 //! Frames are spread over threads; what comes out does not depend on how many, nor on the order they finish in. A frame
 //! that fails stops nothing but itself.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use biplane_artifact::{Match, Verdict};
-use biplane_stage::{Context, How, Store, StoreError};
+use biplane_stage::{Context, Hashed, How, Store, StoreError};
 use rayon::prelude::*;
 
 use crate::diagnostics::slashes;
@@ -14,12 +15,9 @@ use crate::logging::Progress;
 use crate::outcome::{BodyOutcome, Failure, FrameOutcome, Outcome, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
-use crate::results::{README, poses_csv, write_if_changed};
-use crate::steps::{ItemError, MATCH, SEGMENT, Steps};
+use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
+use crate::steps::{ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
 use crate::study::Study;
-
-/// The steps in order.
-const STEPS: [&str; 2] = [SEGMENT, MATCH];
 
 /// Why a run came to no end.
 #[derive(Debug, thiserror::Error)]
@@ -60,12 +58,12 @@ pub enum RunError {
     },
 }
 
-/// What one frame gave, its counts in the order of [`STEPS`].
+/// What one frame gave, its counts in the order of the steps.
 struct Frame {
     outcome: FrameOutcome,
     failures: Vec<Failure>,
     warnings: Vec<String>,
-    counts: [StepCount; 2],
+    counts: [StepCount; STEPS.len()],
     inputs: Vec<(String, String)>,
 }
 
@@ -129,7 +127,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         },
         failures: Vec::new(),
         warnings: Vec::new(),
-        counts: [StepCount::default(); 2],
+        counts: [StepCount::default(); STEPS.len()],
         inputs: Vec::new(),
     };
     let slots: Vec<_> =
@@ -166,12 +164,15 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
             None => steps.matching(job, place, &curves),
         })
         .collect();
+    let mut matches = Vec::new();
     for ((body, start, pose), result) in job.bodies.iter().zip(bodies) {
         let name = format!("{MATCH}/{}", steps.item(job, &study.bodies[*body].name));
         let result = match result {
             Ok((found, how)) => {
                 count(&mut frame, 1, &name, &how);
-                Ok(named(&found, steps, job))
+                let result = Ok(named(&found, steps, job));
+                matches.push(found);
+                result
             }
             Err(ItemError::Cancelled) => return None,
             Err(ItemError::Failed(message)) => {
@@ -191,7 +192,42 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
             result,
         });
     }
+    if matches.len() == job.bodies.len() {
+        overlays(steps, job, &matches, &mut frame)?;
+    } else {
+        frame.counts[2].failed += job.pictures.len();
+    }
     Some(frame)
+}
+
+/// Draws the overlays of a frame and copies them to the results; `None` if the run was stopped.
+fn overlays(steps: &Steps<'_>, job: &Job, matches: &[Hashed<Match>], frame: &mut Frame) -> Option<()> {
+    let study = &steps.prepared.study;
+    let drawn: Vec<_> =
+        (0..job.pictures.len()).into_par_iter().map(|slot| steps.overlay(job, slot, matches)).collect();
+    for (slot, result) in drawn.into_iter().enumerate() {
+        let (view, view_name) = steps.view(job, slot);
+        let name = format!("{OVERLAY}/{}", steps.item(job, view_name));
+        let place = Path::new("overlays").join(&study.trials[job.trial].name);
+        let place = place.join(format!("{}_{view_name}.png", job.label));
+        let message = match result {
+            Ok((stored, how)) => {
+                count(frame, 2, &name, &how);
+                match copy_if_other(stored.path(), &study.output.join(&place)) {
+                    Ok(()) => {
+                        frame.outcome.overlays.push((view, place));
+                        continue;
+                    }
+                    Err(error) => format!("cannot write {}: {error}", slashes(&study.output.join(&place))),
+                }
+            }
+            Err(ItemError::Cancelled) => return None,
+            Err(ItemError::Failed(message)) => message,
+        };
+        frame.counts[2].failed += 1;
+        frame.failures.push(Failure { item: name, message: study.shorten(&message) });
+    }
+    Some(())
 }
 
 fn count(frame: &mut Frame, step: usize, item: &str, how: &How) {

@@ -1,16 +1,17 @@
 //! The steps of the method as items of a study: what each reads, its name in the store, how it runs and is explained.
 //!
 //! `segment/<trial>/<frame>/<view>` makes curves from a picture, `match/<trial>/<frame>/<body>` a pose from the curves of
-//! all views.
+//! all views, `overlay/<trial>/<frame>/<view>` a picture with the outlines of the posed bodies.
 
-use biplane_artifact::{Artifact, Curves, Match};
+use biplane_artifact::{Artifact, Curves, Match, Picture};
 use biplane_optimisation::{MatchBody, MatchInputs};
 use biplane_segmentation::{Segment, SegmentInputs};
 use biplane_stage::{
-    Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, Promised, Stage, Store, StoreError,
-    Stored,
+    Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, Promise, Promised, Stage, Store,
+    StoreError, Stored,
 };
 
+use crate::overlay::{Overlay, OverlayInputs};
 use crate::prepare::{Job, Prepared};
 use crate::sources::FrameFacts;
 
@@ -18,6 +19,10 @@ use crate::sources::FrameFacts;
 pub const SEGMENT: &str = "segment";
 /// Step of poses.
 pub const MATCH: &str = "match";
+/// Step of pictures for people.
+pub const OVERLAY: &str = "overlay";
+/// All steps in order.
+pub const STEPS: [&str; 3] = [SEGMENT, MATCH, OVERLAY];
 
 /// Why an item has no output.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -152,6 +157,72 @@ impl Steps<'_> {
         Ok((self.read(&done.output).map_err(ItemError::Failed)?, done.how))
     }
 
+    fn overlay_promised(
+        &self,
+        job: &Job,
+        slot: usize,
+        facts: &FrameFacts,
+        matches: &[Promise<Match>],
+    ) -> OverlayInputs<Promised> {
+        OverlayInputs {
+            frame: facts.promise(),
+            calibration: self.prepared.calibrations[self.view(job, slot).0].promise(),
+            models: job.bodies.iter().map(|(body, ..)| self.prepared.meshes[*body].facts.promise()).collect(),
+            matches: matches.to_vec(),
+        }
+    }
+
+    /// Draws the bodies of a frame on one of its pictures; one match a body of the job.
+    ///
+    /// # Errors
+    /// The stage failed, or the store did.
+    pub fn overlay(
+        &self,
+        job: &Job,
+        slot: usize,
+        matches: &[Hashed<Match>],
+    ) -> Result<(Stored<Picture>, How), ItemError> {
+        let facts = self.picture(job, slot)?;
+        let (view, name) = self.view(job, slot);
+        let load = || -> Result<OverlayInputs, String> {
+            let models = job.bodies.iter().map(|(body, ..)| self.prepared.meshes[*body].load());
+            Ok(OverlayInputs {
+                frame: Hashed::new(self.prepared.read(&job.pictures[slot]).map_err(|e| e.to_string())?),
+                calibration: self.prepared.calibrations[view].clone(),
+                models: models.collect::<Result<_, _>>()?,
+                matches: matches.to_vec(),
+            })
+        };
+        let promises: Vec<Promise<Match>> = matches.iter().map(Hashed::promise).collect();
+        let promised = self.overlay_promised(job, slot, &facts, &promises);
+        self.store
+            .execute::<Overlay, _>(
+                OVERLAY,
+                &self.item(job, name),
+                &self.prepared.overlay,
+                &promised,
+                load,
+                self.context,
+            )
+            .map(|done| (done.output, done.how))
+            .map_err(ItemError::of_execute)
+    }
+
+    /// Why a picture would be drawn on.
+    ///
+    /// # Errors
+    /// The picture cannot be used, or the store cannot.
+    pub fn explain_overlay(
+        &self,
+        job: &Job,
+        slot: usize,
+        matches: &[Promise<Match>],
+    ) -> Result<Explanation, ItemError> {
+        let promised = self.overlay_promised(job, slot, &self.picture(job, slot)?, matches);
+        let parts = KeyParts::of::<Overlay>(&self.prepared.overlay, &promised);
+        self.explain::<Overlay>(OVERLAY, &self.item(job, self.view(job, slot).1), &parts).map(|(why, _)| why)
+    }
+
     /// Reads a stored output; a damaged one is taken away, so that the next run makes it again.
     fn read<A: Artifact>(&self, stored: &Stored<A>) -> Result<Hashed<A>, String> {
         stored.load().map_err(|error| {
@@ -181,7 +252,7 @@ impl Steps<'_> {
         self.explain::<Segment>(SEGMENT, &self.item(job, self.view(job, slot).1), &parts)
     }
 
-    /// Why a body would be matched.
+    /// Why a body would be matched, and its match if it is there.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -190,11 +261,11 @@ impl Steps<'_> {
         job: &Job,
         place: usize,
         curves: &[Stored<Curves>],
-    ) -> Result<Explanation, ItemError> {
+    ) -> Result<(Explanation, Option<Stored<Match>>), ItemError> {
         let promised = self.match_promised(job, place, curves);
         let parts = KeyParts::of::<MatchBody>(&self.prepared.matching, &promised);
         let item = self.item(job, &self.prepared.study.bodies[job.bodies[place].0].name);
-        self.explain::<MatchBody>(MATCH, &item, &parts).map(|(why, _)| why)
+        self.explain::<MatchBody>(MATCH, &item, &parts)
     }
 
     fn explain<S: Stage>(
