@@ -1,6 +1,6 @@
 //! Surfaces of bodies: STL, ascii and binary, to a checked mesh in mm.
 //!
-//! Read by an own reader ([`stl`](self)), not by the crate `stl_io`: that one goes by the word `solid`, which many binary
+//! Read by an own reader, not by the crate `stl_io`: that one goes by the word `solid`, which many binary
 //! files also start with, stops at the first of several solids without a word, insists on lower case and names no line.
 //!
 //! Guaranteed: coordinates are finite and in mm, corners with the very same coordinates are one vertex, triangles without

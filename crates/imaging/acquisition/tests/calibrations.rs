@@ -1,5 +1,7 @@
 //! Calibrations written here and read back by projecting points; every broken one with its message.
 
+#![allow(clippy::unwrap_used)] // the helpers of tests are tests
+
 use std::path::PathBuf;
 
 use approx::assert_relative_eq;

@@ -1,5 +1,7 @@
 //! DICOM objects made here: polarity, bits, signs, frame times, byte orders; and no patient in anything that comes out.
 
+#![allow(clippy::unwrap_used)] // the helpers of tests are tests
+
 use std::path::PathBuf;
 
 use biplane_acquisition::images::{ImageFile, ImageFormat, read_frame};
@@ -227,4 +229,145 @@ fn wrong_values_in_the_header_are_named_without_their_text() {
     assert!(text.contains("colour"), "{text}");
     let text = message(&|o| set(o, tags::NUMBER_OF_FRAMES, VR::IS, "2000000000"));
     assert!(text.contains("cut short"), "{text}");
+}
+
+fn put_fragments(o: &mut InMemDicomObject, offsets: Vec<u32>, fragments: Vec<Vec<u8>>) {
+    let pixels = dicom_core::value::PixelFragmentSequence::new(offsets, fragments);
+    o.put(DataElement::new(tags::PIXEL_DATA, VR::OB, pixels));
+}
+
+/// The object with 8-bit samples of another size.
+fn object8(columns: u16, rows: u16, frames: &str) -> InMemDicomObject {
+    let mut o = object();
+    for (tag, value) in [
+        (tags::BITS_ALLOCATED, 8),
+        (tags::BITS_STORED, 8),
+        (tags::HIGH_BIT, 7),
+        (tags::COLUMNS, columns),
+        (tags::ROWS, rows),
+    ] {
+        set(&mut o, tag, VR::US, value as u16);
+    }
+    set(&mut o, tags::NUMBER_OF_FRAMES, VR::IS, frames);
+    o
+}
+
+#[test]
+fn big_endian_words_of_two_samples_are_read_at_odd_places() {
+    let folder = TempDir::new().unwrap();
+    // 3 x 3 samples a frame: the second one starts in the middle of a word.
+    let mut o = object8(3, 3, "3");
+    let bytes: Vec<u8> = (0..28).collect();
+    let words: Vec<u16> = bytes.chunks(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
+    pixels(&mut o, &words);
+    for syntax in [EXPLICIT_BIG, EXPLICIT_LITTLE] {
+        let path = save(&folder, "run", syntax, o.clone());
+        for frame in 0..3 {
+            let expected: Vec<u16> = (0..9).map(|i| 255 - (9 * frame + i)).collect();
+            assert_eq!(
+                read_frame(&path, usize::from(frame)).unwrap().samples,
+                expected,
+                "{syntax}, frame {frame}"
+            );
+        }
+    }
+}
+
+#[test]
+fn run_length_encoded_frames_are_read() {
+    let folder = TempDir::new().unwrap();
+    // PS3.5 annex G: 16 numbers (segments, offsets), then runs; here one literal run of 12 bytes and padding.
+    let frame = |f: u8| {
+        let mut bytes: Vec<u8> = [1_u32, 64].iter().flat_map(|v| v.to_le_bytes()).collect();
+        bytes.resize(64, 0);
+        bytes.push(11);
+        bytes.extend((0..12).map(|i| f * 50 + i));
+        bytes.push(128);
+        bytes
+    };
+    let mut o = object8(4, 3, "3");
+    put_fragments(&mut o, vec![], vec![frame(0), frame(1), frame(2)]);
+    let path = save(&folder, "run", "1.2.840.10008.1.2.5", o);
+    let mut file = ImageFile::open(path).unwrap();
+    for f in [1, 0, 2] {
+        let expected: Vec<u16> = (0..12).map(|i| 255 - (f as u16 * 50 + i)).collect();
+        assert_eq!(file.frame(f).unwrap().samples, expected);
+    }
+}
+
+#[test]
+fn jpeg_frames_in_pieces_are_put_together_and_their_size_is_checked() {
+    let folder = TempDir::new().unwrap();
+    const JPEG: &str = "1.2.840.10008.1.2.4.50";
+    let picture =
+        |f: u32| image::GrayImage::from_fn(32, 24, |x, y| image::Luma([(x * 3 + y + f * 60) as u8]));
+    let jpeg = |f| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture(f).write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
+        let mut bytes = bytes.into_inner();
+        bytes.resize(bytes.len().next_multiple_of(2), 0);
+        bytes
+    };
+    let mut fragments = Vec::new();
+    let (mut offsets, mut at) = (Vec::new(), 0);
+    for f in 0..2 {
+        offsets.push(at);
+        let bytes = jpeg(f);
+        for piece in [&bytes[..100], &bytes[100..]] {
+            at += 8 + piece.len() as u32;
+            fragments.push(piece.to_vec());
+        }
+    }
+    let mut o = object8(32, 24, "2");
+    put_fragments(&mut o, offsets, fragments.clone());
+    let path = save(&folder, "run", JPEG, o.clone());
+    for f in 0..2 {
+        let frame = read_frame(&path, f).unwrap();
+        let expected = picture(f as u32);
+        let worst = frame.samples.iter().zip(expected.as_raw()).map(|(a, b)| a.abs_diff(255 - u16::from(*b)));
+        assert!(worst.max().unwrap() <= 8, "frame {f}");
+    }
+    // Without the table nobody knows where a frame starts.
+    put_fragments(&mut o, vec![], fragments.clone());
+    let text = read_frame(save(&folder, "run", JPEG, o), 0).unwrap_err().to_string();
+    assert!(text.contains("cut to pieces without a table"), "{text}");
+    let mut o = object8(16, 24, "1");
+    put_fragments(&mut o, vec![], fragments[..2].to_vec());
+    let text = read_frame(save(&folder, "run", JPEG, o), 0).unwrap_err().to_string();
+    assert!(text.contains("its header says 16 x 24 pixels, its JPEG 32 x 24"), "{text}");
+    // JPEG-LS is not decoded, and named.
+    let mut o = object8(32, 24, "1");
+    put_fragments(&mut o, vec![], fragments[..2].to_vec());
+    let text = read_frame(save(&folder, "run", "1.2.840.10008.1.2.4.80", o), 0).unwrap_err().to_string();
+    assert!(text.contains("transfer syntax 1.2.840.10008.1.2.4.80) cannot be decoded"), "{text}");
+}
+
+#[test]
+fn sequences_without_end_and_lengths_without_bounds_are_harmless() {
+    let folder = TempDir::new().unwrap();
+    let path = save(&folder, "run", EXPLICIT_LITTLE, object());
+    let whole = std::fs::read(&path).unwrap();
+    // A sequence in a sequence in a sequence, a hundred thousand deep, with and without its ends.
+    let open = [
+        [8, 0, 0x40, 0x11, b'S', b'Q', 0, 0, 0xff, 0xff, 0xff, 0xff].as_slice(),
+        &[0xfe, 0xff, 0x00, 0xe0, 0xff, 0xff, 0xff, 0xff],
+    ]
+    .concat();
+    let close = [0xfe, 0xff, 0x0d, 0xe0, 0, 0, 0, 0, 0xfe, 0xff, 0xdd, 0xe0, 0, 0, 0, 0];
+    let deep = 100_000;
+    let head = &whole[..whole.windows(2).position(|w| w == b"CS").unwrap() - 4];
+    let tail = &whole[head.len()..];
+    let balanced = [head, &open.repeat(deep), &close.repeat(deep), tail].concat();
+    std::fs::write(&path, balanced).unwrap();
+    assert_eq!(ImageFile::open(&path).unwrap().info().frames, 3);
+    std::fs::write(&path, [head, &open.repeat(deep)].concat()).unwrap();
+    assert!(ImageFile::open(&path).is_err());
+    std::fs::write(&path, [head, &close, tail].concat()).unwrap();
+    let text = ImageFile::open(&path).unwrap_err().to_string();
+    assert!(text.contains("cannot be followed beyond byte"), "{text}");
+    // An element that claims four gigabytes.
+    let huge = [8, 0, 0x41, 0x11, b'U', b'T', 0, 0, 0xf0, 0xff, 0xff, 0xff];
+    std::fs::write(&path, [head, &huge, tail].concat()).unwrap();
+    let text = ImageFile::open(&path).unwrap_err().to_string();
+    assert!(text.contains("cannot be followed beyond byte"), "{text}");
 }

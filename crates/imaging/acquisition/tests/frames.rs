@@ -1,5 +1,7 @@
 //! Lists of frames by folder, pattern and file; and their pairing.
 
+#![allow(clippy::unwrap_used)] // the helpers of tests are tests
+
 use std::path::Path;
 
 use biplane_acquisition::frames::{FrameSource, PairBy, PairError, list_frames, pair};

@@ -1,5 +1,7 @@
 //! Pictures made here, written in every format, read back; and every way a picture can be bad, with its message.
 
+#![allow(clippy::unwrap_used)] // the helpers of tests are tests
+
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,7 @@
 //! Meshes written here: units, encodings, winding, and every broken one with its message.
 
+#![allow(clippy::unwrap_used)] // the helpers of tests are tests
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! DICOM, one frame or many, as X-ray angiography (XA), fluoroscopy (RF) and MR objects hold them.
 //!
-//! Of the data set only the elements named in [`KEPT`] stay in memory, and only numbers, one of a few known words or a
-//! transfer syntax (digits and dots) ever reach a message: the errors of the DICOM crates, which may quote a header, are
-//! not passed on.
+//! The data set is walked by an own reader ([`data_set`]), which takes up only the elements that describe the pixels and
+//! steps over all others, so a patient's name is never even read; the DICOM crates decode compressed frames. Only
+//! numbers, one of a few known words or a transfer syntax (digits and dots) ever reach a message.
 //!
 //! **Levels.** A frame's levels span what `BitsStored` can hold. Signed samples are shifted up by half of that range.
 //! `MONOCHROME1` is turned round, and so is a negative rescale slope. The size of slope and intercept has no further
@@ -11,42 +11,21 @@
 //!
 //! **Times** come from `FrameTimeVector`, else `FrameTime`, else `CineRate`, else `RecommendedDisplayFrameRate`.
 
+mod data_set;
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use biplane_artifact::Frame;
+use dicom_core::value::PixelFragmentSequence;
+use dicom_core::{DataElement, PrimitiveValue, VR};
 use dicom_dictionary_std::tags;
-use dicom_object::{DefaultDicomObject, OpenFileOptions, Tag};
+use dicom_object::{FileMetaTableBuilder, InMemDicomObject};
 use dicom_pixeldata::PixelDecoder;
 
+use self::data_set::{DataSet, Pixels};
 use super::{ImageError, ImageFormat, ImageInfo, Place, quietly};
-
-/// The elements that describe pixels; all others are dropped as soon as a file is read.
-const KEPT: [Tag; 18] = [
-    tags::SAMPLES_PER_PIXEL,
-    tags::PHOTOMETRIC_INTERPRETATION,
-    tags::PLANAR_CONFIGURATION,
-    tags::NUMBER_OF_FRAMES,
-    tags::ROWS,
-    tags::COLUMNS,
-    tags::BITS_ALLOCATED,
-    tags::BITS_STORED,
-    tags::HIGH_BIT,
-    tags::PIXEL_REPRESENTATION,
-    tags::RESCALE_INTERCEPT,
-    tags::RESCALE_SLOPE,
-    tags::FRAME_TIME,
-    tags::FRAME_TIME_VECTOR,
-    tags::CINE_RATE,
-    tags::RECOMMENDED_DISPLAY_FRAME_RATE,
-    tags::PIXEL_DATA,
-    tags::EXTENDED_OFFSET_TABLE,
-];
-
-/// Transfer syntaxes that store pixels as they are.
-const NOT_COMPRESSED: [&str; 5] =
-    ["1.2.840.10008.1.2", "1.2.840.10008.1.2.1", "1.2.840.10008.1.2.2", DEFLATED, "1.2.840.113619.5.2"];
-/// The transfer syntax that compresses the whole data set, not the pixels.
-const DEFLATED: &str = "1.2.840.10008.1.2.1.99";
 
 const ADVICE: &str = "export the run as uncompressed DICOM, or as 8- or 16-bit grey TIFF or PNG";
 
@@ -61,62 +40,19 @@ struct Layout {
     high_bit: u32,
     signed: bool,
     inverted: bool,
-    compressed: bool,
 }
 
 pub(super) struct Frames {
     layout: Layout,
+    data: DataSet,
     length: u64,
-    /// With the pixel data, once a frame was asked for.
-    object: Option<DefaultDicomObject>,
-}
-
-/// Reads a file, whole or up to its pixels, and drops what is not kept.
-fn load(place: Place<'_>, whole: bool) -> Result<DefaultDicomObject, ImageError> {
-    let options = OpenFileOptions::new();
-    let options =
-        if whole { options.read_to(tags::PIXEL_DATA) } else { options.read_until(tags::PIXEL_DATA) };
-    let mut object = quietly(|| options.open_file(place.path)).map_err(|error| match error {
-        dicom_object::ReadError::ReadFile { source, .. }
-        | dicom_object::ReadError::OpenFile { source, .. } => place.io(source),
-        dicom_object::ReadError::ReadUnrecognizedTransferSyntax { .. }
-        | dicom_object::ReadError::ReadUnsupportedTransferSyntax { .. } => {
-            place.unsupported("DICOM with a transfer syntax that is not known", ADVICE)
-        }
-        _ => place.damaged("its DICOM data set cannot be read to the pixels: cut short, or not well formed"),
-    })?;
-    let dropped: Vec<Tag> = object.iter().map(|e| e.header().tag).filter(|t| !KEPT.contains(t)).collect();
-    for tag in dropped {
-        object.remove_element(tag);
-    }
-    let meta = object.meta_mut();
-    meta.media_storage_sop_instance_uid.clear();
-    meta.source_application_entity_title = None;
-    meta.sending_application_entity_title = None;
-    meta.receiving_application_entity_title = None;
-    meta.private_information_creator_uid = None;
-    meta.private_information = None;
-    Ok(object)
-}
-
-fn whole_number(object: &DefaultDicomObject, tag: Tag) -> Option<u32> {
-    object.element_opt(tag).ok().flatten()?.to_int::<u32>().ok()
-}
-
-fn numbers(object: &DefaultDicomObject, tag: Tag) -> Option<Vec<f64>> {
-    object.element_opt(tag).ok().flatten()?.to_multi_float64().ok()
-}
-
-/// The transfer syntax, as digits and dots.
-fn syntax(object: &DefaultDicomObject) -> String {
-    object.meta().transfer_syntax().chars().filter(|c| c.is_ascii_digit() || *c == '.').take(64).collect()
 }
 
 pub(super) fn open(path: &Path, length: u64) -> Result<(ImageInfo, Frames), ImageError> {
     let place = Place { path, index: 0 };
-    let object = load(place, false)?;
-    let layout = layout(place, &object, length)?;
-    let (rate_hz, times_s) = times(&object, layout.frames);
+    let data = data_set::walk(place, length)?;
+    let layout = layout(place, &data, length)?;
+    let (rate_hz, times_s) = times(&data, layout.frames);
     let info = ImageInfo {
         format: ImageFormat::Dicom,
         width: layout.width,
@@ -126,12 +62,12 @@ pub(super) fn open(path: &Path, length: u64) -> Result<(ImageInfo, Frames), Imag
         rate_hz,
         times_s,
     };
-    Ok((info, Frames { layout, length, object: None }))
+    Ok((info, Frames { layout, data, length }))
 }
 
-fn layout(place: Place<'_>, object: &DefaultDicomObject, length: u64) -> Result<Layout, ImageError> {
+fn layout(place: Place<'_>, data: &DataSet, length: u64) -> Result<Layout, ImageError> {
     let need = |tag, name: &str| {
-        whole_number(object, tag).ok_or_else(|| {
+        data.unsigned(tag).ok_or_else(|| {
             place.damaged(format!(
                 "its DICOM header has no {name} that is a number: not an image, or cut short"
             ))
@@ -139,10 +75,14 @@ fn layout(place: Place<'_>, object: &DefaultDicomObject, length: u64) -> Result<
     };
     let (width, height) = (need(tags::COLUMNS, "Columns")?, need(tags::ROWS, "Rows")?);
     let allocated = need(tags::BITS_ALLOCATED, "BitsAllocated")?;
-    let stored = whole_number(object, tags::BITS_STORED).unwrap_or(allocated);
-    let high_bit = whole_number(object, tags::HIGH_BIT).unwrap_or(stored.saturating_sub(1));
-    let frames = whole_number(object, tags::NUMBER_OF_FRAMES).unwrap_or(1).max(1);
-    if whole_number(object, tags::SAMPLES_PER_PIXEL).unwrap_or(1) != 1 {
+    let stored = data.unsigned(tags::BITS_STORED).unwrap_or(allocated);
+    let high_bit = data.unsigned(tags::HIGH_BIT).unwrap_or(stored.saturating_sub(1));
+    let frames = match data.decimals(tags::NUMBER_OF_FRAMES).as_deref() {
+        None => 1,
+        Some([n, ..]) if *n >= 1.0 && n.fract() == 0.0 => *n as u64,
+        _ => return Err(place.damaged("its NumberOfFrames is not a number of frames")),
+    };
+    if data.unsigned(tags::SAMPLES_PER_PIXEL).unwrap_or(1) != 1 {
         return Err(place.unsupported("a DICOM colour picture", ADVICE));
     }
     if allocated != 8 && allocated != 16 {
@@ -153,12 +93,7 @@ fn layout(place: Place<'_>, object: &DefaultDicomObject, length: u64) -> Result<
             "its DICOM header says {stored} bits stored of {allocated}, the highest being bit {high_bit}"
         )));
     }
-    let photometric = object
-        .element_opt(tags::PHOTOMETRIC_INTERPRETATION)
-        .ok()
-        .flatten()
-        .and_then(|e| e.to_str().ok().map(|s| s.trim_matches([' ', '\0']).to_owned()));
-    let inverted = match photometric.as_deref() {
+    let inverted = match data.word(tags::PHOTOMETRIC_INTERPRETATION) {
         Some("MONOCHROME1") => true,
         Some("MONOCHROME2") => false,
         _ => {
@@ -168,19 +103,22 @@ fn layout(place: Place<'_>, object: &DefaultDicomObject, length: u64) -> Result<
             ));
         }
     };
-    let falling = numbers(object, tags::RESCALE_SLOPE).is_some_and(|s| s.first().is_some_and(|&s| s < 0.0));
-    let compressed = !NOT_COMPRESSED.contains(&object.meta().transfer_syntax());
+    let falling = data.decimals(tags::RESCALE_SLOPE).is_some_and(|s| s.first().is_some_and(|&s| s < 0.0));
     let bytes = u64::from(allocated / 8);
     place.check_size(width.into(), height.into(), bytes, length)?;
-    let deflated = object.meta().transfer_syntax() == DEFLATED;
     let frame_bytes = u64::from(width) * u64::from(height) * bytes;
-    if !compressed && !deflated && frame_bytes.saturating_mul(frames.into()) > length {
-        let index = (length / frame_bytes) as usize;
-        return Err(Place { index, ..place }.truncated(length));
-    }
-    // An encapsulated frame has a header of 8 bytes at least.
-    if u64::from(frames) > length {
-        return Err(place.damaged(format!("it claims {frames} frames in {length} bytes")));
+    match &data.pixels {
+        Pixels::Missing => return Err(place.truncated(length)),
+        Pixels::Native { length: held, .. } if frame_bytes.saturating_mul(frames) > *held => {
+            let index = (held / frame_bytes) as usize;
+            return Err(Place { index, ..place }.truncated(length));
+        }
+        Pixels::Native { .. } => {}
+        // The first item is the table of offsets.
+        Pixels::Encapsulated { items } if frames >= items.len() as u64 => {
+            return Err(Place { index: items.len().saturating_sub(1), ..place }.truncated(length));
+        }
+        Pixels::Encapsulated { .. } => {}
     }
     Ok(Layout {
         width: width as usize,
@@ -189,17 +127,16 @@ fn layout(place: Place<'_>, object: &DefaultDicomObject, length: u64) -> Result<
         allocated,
         stored,
         high_bit,
-        signed: whole_number(object, tags::PIXEL_REPRESENTATION) == Some(1),
+        signed: data.unsigned(tags::PIXEL_REPRESENTATION) == Some(1),
         inverted: inverted != falling,
-        compressed,
     })
 }
 
 /// Frames a second, and seconds of each frame after the first.
-fn times(object: &DefaultDicomObject, frames: usize) -> (Option<f64>, Vec<f64>) {
+fn times(data: &DataSet, frames: usize) -> (Option<f64>, Vec<f64>) {
     let positive =
-        |tag| numbers(object, tag).and_then(|v| v.first().copied()).filter(|v| *v > 0.0 && v.is_finite());
-    let vector = numbers(object, tags::FRAME_TIME_VECTOR).filter(|v| {
+        |tag| data.decimals(tag).and_then(|v| v.first().copied()).filter(|v| *v > 0.0 && v.is_finite());
+    let vector = data.decimals(tags::FRAME_TIME_VECTOR).filter(|v| {
         v.len() == frames && frames > 1 && v.iter().skip(1).all(|step| *step > 0.0 && step.is_finite())
     });
     if let Some(steps) = vector {
@@ -219,37 +156,166 @@ fn times(object: &DefaultDicomObject, frames: usize) -> (Option<f64>, Vec<f64>) 
 }
 
 impl Frames {
-    pub(super) fn read(&mut self, path: &Path, index: usize) -> Result<Frame, ImageError> {
+    pub(super) fn read(&self, path: &Path, index: usize) -> Result<Frame, ImageError> {
         let place = Place { path, index };
-        let object = match &mut self.object {
-            Some(object) => object,
-            none => none.insert(load(place, true)?),
-        };
-        let Layout { width, height, allocated, compressed, .. } = self.layout;
-        let bytes = if allocated == 8 { 1 } else { 2 };
-        let size = width * height * bytes;
-        let raw = if compressed {
-            let transfer_syntax = syntax(object);
-            // The decoder's own message may quote the header.
-            let decoded =
-                quietly(|| object.decode_pixel_data_frame(u32::try_from(index).unwrap_or(u32::MAX)))
-                    .map_err(|_| {
-                        place.unsupported(
-                            format!(
-                                "DICOM whose pixels (transfer syntax {transfer_syntax}) cannot be decoded"
-                            ),
-                            ADVICE,
-                        )
-                    })?;
-            to_samples(decoded.data(), bytes)
-        } else {
-            native(object, index * size, size, bytes).ok_or_else(|| place.truncated(self.length))?
+        let Layout { width, height, allocated, stored, .. } = self.layout;
+        let mut file = File::open(path).map_err(|e| place.io(e))?;
+        let raw = match &self.data.pixels {
+            Pixels::Missing => return Err(place.truncated(self.length)),
+            Pixels::Native { offset, length, words } => {
+                let size = width * height * if allocated == 8 { 1 } else { 2 };
+                let start = index as u64 * size as u64;
+                // Of big-endian words that hold two samples each, the second byte is the first sample.
+                let swapped = u64::from(self.data.big_endian && *words && allocated == 8);
+                let (low, high) = (start & !swapped, (start + size as u64 + swapped) & !swapped);
+                let bytes = self.bytes(place, &mut file, offset + low, high.min(*length) - low)?;
+                if allocated == 8 {
+                    (start - low..)
+                        .take(size)
+                        .map_while(|i| bytes.get((i ^ swapped) as usize))
+                        .map(|b| (*b).into())
+                        .collect()
+                } else if self.data.big_endian {
+                    bytes.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect()
+                } else {
+                    bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect()
+                }
+            }
+            Pixels::Encapsulated { items } => {
+                let mut fragment = Vec::new();
+                for (offset, length) in self.fragments(place, &mut file, items)? {
+                    fragment.extend(self.bytes(place, &mut file, offset, length)?);
+                }
+                self.decode(place, fragment)?
+            }
         };
         if raw.len() < width * height {
             return Err(place.truncated(self.length));
         }
-        let samples = raw.iter().take(width * height).map(|&s| self.layout.level(s)).collect();
-        Ok(Frame { width, height, samples, bits: self.layout.stored })
+        let samples = raw.iter().take(width * height).map(|&s: &u16| self.layout.level(s)).collect();
+        Ok(Frame { width, height, samples, bits: stored })
+    }
+
+    /// Bytes of the file; that they are there was checked when it was walked.
+    fn bytes(
+        &self,
+        place: Place<'_>,
+        file: &mut File,
+        offset: u64,
+        length: u64,
+    ) -> Result<Vec<u8>, ImageError> {
+        file.seek(SeekFrom::Start(offset)).map_err(|e| place.io(e))?;
+        let mut bytes = Vec::new();
+        let read = file.take(length).read_to_end(&mut bytes).map_err(|e| place.io(e))?;
+        if (read as u64) < length { Err(place.truncated(self.length)) } else { Ok(bytes) }
+    }
+
+    /// The pieces of one compressed frame: its own item, or by the table of offsets, or all of a single frame.
+    fn fragments(
+        &self,
+        place: Place<'_>,
+        file: &mut File,
+        items: &[(u64, u64)],
+    ) -> Result<Vec<(u64, u64)>, ImageError> {
+        let frames = self.layout.frames;
+        let (Some((table, pieces)), index) = (items.split_first(), place.index) else {
+            return Err(place.truncated(self.length));
+        };
+        if pieces.len() == frames {
+            return Ok(pieces[index..=index].to_vec());
+        }
+        if frames == 1 {
+            return Ok(pieces.to_vec());
+        }
+        let offsets: Vec<u64> = if table.1 == 4 * frames as u64 {
+            let bytes = self.bytes(place, file, table.0, table.1)?;
+            bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]).into()).collect()
+        } else {
+            return Err(place.unsupported(
+                "DICOM whose compressed frames are cut to pieces without a table of them",
+                ADVICE,
+            ));
+        };
+        // Offsets count from the tag of the first piece, eight bytes before what is in it.
+        let first = pieces[0].0;
+        let end = offsets.get(index + 1).copied().unwrap_or(u64::MAX);
+        let inside = |(offset, _): &&(u64, u64)| (offsets[index]..end).contains(&(offset - first));
+        Ok(pieces.iter().filter(inside).copied().collect())
+    }
+
+    /// Decodes one compressed frame, through an object that holds nothing else.
+    fn decode(&self, place: Place<'_>, fragment: Vec<u8>) -> Result<Vec<u16>, ImageError> {
+        let Layout { width, height, allocated, stored, high_bit, signed, .. } = self.layout;
+        if let Some(found) = jpeg_size(&fragment)
+            && found != [width, height]
+        {
+            return Err(place.damaged(format!(
+                "its header says {width} x {height} pixels, its JPEG {} x {}",
+                found[0], found[1]
+            )));
+        }
+        let mut object = InMemDicomObject::new_empty();
+        let numbers = [
+            (tags::SAMPLES_PER_PIXEL, 1),
+            (tags::ROWS, height as u16),
+            (tags::COLUMNS, width as u16),
+            (tags::BITS_ALLOCATED, allocated as u16),
+            (tags::BITS_STORED, stored as u16),
+            (tags::HIGH_BIT, high_bit as u16),
+            (tags::PIXEL_REPRESENTATION, signed.into()),
+        ];
+        for (tag, value) in numbers {
+            object.put(DataElement::new(tag, VR::US, PrimitiveValue::from(value)));
+        }
+        object.put(DataElement::new(tags::NUMBER_OF_FRAMES, VR::IS, PrimitiveValue::from("1")));
+        object.put(DataElement::new(
+            tags::PHOTOMETRIC_INTERPRETATION,
+            VR::CS,
+            PrimitiveValue::from("MONOCHROME2"),
+        ));
+        let pixels = PixelFragmentSequence::new_fragments(vec![fragment]);
+        object.put(DataElement::new(tags::PIXEL_DATA, VR::OB, pixels));
+        let syntax = &self.data.syntax;
+        let undecodable = || {
+            place.unsupported(
+                format!("DICOM whose pixels (transfer syntax {syntax}) cannot be decoded"),
+                ADVICE,
+            )
+        };
+        let meta = FileMetaTableBuilder::new()
+            .transfer_syntax(syntax.as_str())
+            .media_storage_sop_class_uid("1.2.840.10008.5.1.4.1.1.7")
+            .media_storage_sop_instance_uid("2.25.1");
+        let object = object.with_meta(meta).map_err(|_| undecodable())?;
+        let decoded = quietly(|| object.decode_pixel_data_frame(0)).map_err(|_| undecodable())?;
+        Ok(if allocated == 8 {
+            decoded.data().iter().map(|&b| b.into()).collect()
+        } else {
+            decoded.data().chunks_exact(2).map(|b| u16::from_ne_bytes([b[0], b[1]])).collect()
+        })
+    }
+}
+
+/// Columns and rows that a JPEG says of itself; its decoder takes memory for as many.
+fn jpeg_size(bytes: &[u8]) -> Option<[usize; 2]> {
+    let mut at = 2;
+    if bytes.get(..2)? != [0xff, 0xd8] {
+        return None;
+    }
+    loop {
+        let marker = bytes.get(at..at + 4)?;
+        let length = usize::from(u16::from_be_bytes([marker[2], marker[3]]));
+        match marker[..2] {
+            [0xff, 0xff] => at += 1,
+            // Start of frame; the three others of this range are tables and extensions.
+            [0xff, kind @ 0xc0..=0xcf] if ![0xc4, 0xc8, 0xcc].contains(&kind) => {
+                let size = bytes.get(at + 5..at + 9)?;
+                let number = |i: usize| usize::from(u16::from_be_bytes([size[i], size[i + 1]]));
+                return Some([number(2), number(0)]);
+            }
+            [0xff, _] => at += 2 + length,
+            _ => return None,
+        }
     }
 }
 
@@ -262,29 +328,4 @@ impl Layout {
         let level = if self.signed { bits ^ (1 << (self.stored - 1)) } else { bits };
         if self.inverted { largest - level } else { level }
     }
-}
-
-fn to_samples(bytes: &[u8], per_sample: usize) -> Vec<u16> {
-    if per_sample == 1 {
-        bytes.iter().map(|&b| u16::from(b)).collect()
-    } else {
-        bytes.chunks_exact(2).map(|b| u16::from_ne_bytes([b[0], b[1]])).collect()
-    }
-}
-
-/// Samples of `size` bytes from `offset` on, of pixel data that is not compressed.
-fn native(object: &DefaultDicomObject, offset: usize, size: usize, per_sample: usize) -> Option<Vec<u16>> {
-    let element = object.element_opt(tags::PIXEL_DATA).ok().flatten()?;
-    let end = offset.checked_add(size)?;
-    if let (Ok(words), 2) = (element.uint16_slice(), per_sample) {
-        return Some(words.get(offset / 2..end / 2)?.to_vec());
-    }
-    // Bytes as they lie in the file; of words that hold two samples each, the low byte is the first one.
-    let bytes = element.to_bytes().ok()?;
-    let samples = bytes.get(offset..end)?;
-    Some(if per_sample == 1 {
-        to_samples(samples, 1)
-    } else {
-        samples.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect()
-    })
 }
