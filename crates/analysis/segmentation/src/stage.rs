@@ -35,7 +35,7 @@ pub struct SegmentParams {
 
 impl Default for SegmentParams {
     fn default() -> Self {
-        Self { smoothing_px: 1.5, high_threshold: 2.5, low_threshold: 1.0, min_points: 10 }
+        Self { smoothing_px: 1.0, high_threshold: 2.5, low_threshold: 1.0, min_points: 10 }
     }
 }
 

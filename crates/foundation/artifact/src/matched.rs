@@ -68,6 +68,8 @@ pub struct ViewFit {
     pub in_image_share: f64,
     /// Length of the outline, px.
     pub outline_px: f64,
+    /// How far the view's edges lie inside the outline as a whole, px; taken out of the residuals.
+    pub inset_px: f64,
 }
 
 /// One body in one frame.

@@ -28,6 +28,7 @@ pub fn judge(refined: &Refined, names: &[String], limits: &Limits) -> (Vec<ViewF
                 matched_share: over(e.matched_px, e.in_image_px),
                 in_image_share: over(e.in_image_px, e.outline_px).min(1.0),
                 outline_px: e.outline_px,
+                inset_px: e.inset_px,
             }
         })
         .collect();

@@ -45,6 +45,10 @@ pub struct MatchParams {
     /// How far from the outline an edge may lie at the end to count as found, px.
     #[schemars(range(min = 0.5, max = 50.0))]
     pub final_search_px: f64,
+    /// By how much the image's edges lie inside the outline as a whole, as the rim of a smooth body and smoothing make
+    /// them, px (1 sigma). It is solved for in each view beside the pose; 0 holds it at zero.
+    #[schemars(range(min = 0.0, max = 20.0))]
+    pub inset_px: f64,
     /// `"dark"`, or `"bright"` if bodies are brighter than their surroundings.
     pub contrast: Contrast,
     /// Further starts around the given one, tried while no match is good.
@@ -77,6 +81,7 @@ impl Default for MatchParams {
         Self {
             search_px: 40.0,
             final_search_px: 3.0,
+            inset_px: 1.0,
             contrast: Contrast::Dark,
             retries: 12,
             retry_mm: 4.0,
@@ -125,6 +130,7 @@ impl MatchParams {
         let Self {
             search_px,
             final_search_px,
+            inset_px,
             contrast: _,
             retries,
             retry_mm,
@@ -147,6 +153,7 @@ impl MatchParams {
         let any = f64::MAX;
         within("search_px", search_px, 1.0, 500.0, "1 to 500 px")?;
         within("final_search_px", final_search_px, 0.5, 50.0, "0.5 to 50 px")?;
+        within("inset_px", inset_px, 0.0, 20.0, "0 to 20 px")?;
         within("retries", retries as f64, 0.0, 1000.0, "0 to 1000")?;
         within("retry_mm", retry_mm, 0.0, 1000.0, "0 to 1000 mm")?;
         within("retry_deg", retry_deg, 0.0, 180.0, "0 to 180 degrees")?;
@@ -182,6 +189,7 @@ pub fn match_body(
     let search = RefineParams {
         search_px: params.search_px,
         final_search_px: params.final_search_px,
+        inset_px: params.inset_px,
         contrast: match params.contrast {
             Contrast::Dark => 1.0,
             Contrast::Bright => -1.0,

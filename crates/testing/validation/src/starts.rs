@@ -1,0 +1,97 @@
+//! Matches from many seeded starts around the reference.
+
+use biplane_artifact::{Match, Verdict};
+use biplane_geometry::{Point3, Pose, PoseError, Twist, Vector3};
+use biplane_optimisation::{MatchParams, match_body};
+use rand::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rayon::prelude::*;
+
+use crate::Scene;
+
+/// How starts are drawn: exactly this far off, in directions drawn evenly over the sphere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StartOffset {
+    /// Displacement of the body's centroid, mm.
+    pub translation_mm: f64,
+    /// Angle of the rotation about the centroid, degrees.
+    pub rotation_deg: f64,
+    /// Starts a frame.
+    pub count: usize,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// One match and its error.
+#[derive(Debug, Clone)]
+pub struct Attempt {
+    /// The frame.
+    pub frame: String,
+    /// Which start.
+    pub start: usize,
+    /// The answer.
+    pub answer: Match,
+    /// Against the reference.
+    pub error: PoseError,
+    /// Rotation vector (rad) and displacement of the centroid (mm) of the answer against the reference, laboratory axes.
+    pub difference: (Vector3, Vector3),
+    /// Mean target registration error over the vertices, mm.
+    pub mean_target_mm: f64,
+}
+
+impl Attempt {
+    /// What the verdict says.
+    pub fn verdict(&self) -> Verdict {
+        self.answer.verdict
+    }
+}
+
+/// A direction drawn evenly over the sphere.
+fn direction(random: &mut Xoshiro256PlusPlus) -> Vector3 {
+    let z: f64 = random.random_range(-1.0..=1.0);
+    let a: f64 = random.random_range(0.0..std::f64::consts::TAU);
+    let r = (1.0 - z * z).sqrt();
+    Vector3::new(r * a.cos(), r * a.sin(), z)
+}
+
+impl StartOffset {
+    /// The start poses around a reference: depend on seed, frame and number alone.
+    pub fn draw(&self, reference: &Pose, centroid: &Point3, frame: usize) -> Vec<Pose> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_mul(1_000_003).wrapping_add(frame as u64));
+        (0..self.count)
+            .map(|_| {
+                let twist = Twist {
+                    translation: direction(&mut random) * self.translation_mm,
+                    rotation: direction(&mut random) * self.rotation_deg.to_radians(),
+                };
+                reference.moved(&twist, &reference.transform(centroid))
+            })
+            .collect()
+    }
+}
+
+/// Matches every frame of `scene` from every start.
+pub fn attempts(scene: &Scene, offset: &StartOffset, params: &MatchParams) -> Vec<Attempt> {
+    let centroid = *scene.rim.centroid();
+    scene
+        .frames
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(index, (label, reference, views))| {
+            offset.draw(reference, &centroid, index).into_iter().enumerate().filter_map(move |(start, from)| {
+                // Nothing cancels here, so every match gives an answer.
+                let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
+                let pose = Pose::from(answer.pose);
+                let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
+                Some(Attempt {
+                    frame: label.clone(),
+                    start,
+                    error: pose.error_against(reference, &centroid),
+                    difference: (turn, pose.transform(&centroid) - reference.transform(&centroid)),
+                    mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
+                    answer,
+                })
+            })
+        })
+        .collect()
+}
