@@ -199,17 +199,18 @@ fn the_simulated_study_is_read() {
     for view in ["A", "B"] {
         let calibration = read_plane_json(&truth, view).unwrap();
         assert_eq!(calibration.size, [1024, 1024]);
-        // truth.json: source and l of each view.
-        let l = if view == "A" { 1017.689_225 } else { 988.643_767 };
+        // truth.json: `centre` and `l` of each view.
+        let (centre, l) = if view == "A" {
+            ([-11.705301374249581, 486.46260620579295, 5.2867420500296305], 1017.6892251211759)
+        } else {
+            ([-467.0809376707959, 5.60369064493868, -13.460030505089694], 988.643767318124)
+        };
         let normal = Vector3::from(calibration.matrix[2]);
         assert!((normal.norm() - 1.0).abs() < 1e-9);
         let table = read_distortion_csv(folder.join(format!("truth/distortion_{view}.csv"))).unwrap();
         assert_eq!((table.first_px, table.step_px, table.count), ([40.0; 2], [24.0; 2], [40; 2]));
         assert_eq!(table.ideal_px[1], if view == "A" { [85.245, 51.0825] } else { table.ideal_px[1] });
-        // A point of the plane of the detector is as deep as the source is far.
-        let m = Matrix3::from_fn(|i, j| calibration.matrix[i][j]);
-        let middle = m.try_inverse().unwrap() * Vector3::new(511.5, 511.5, 1.0) * l;
-        let [x, y, depth] = project(&calibration, Vector3::from(calibration.source) + middle);
+        let [x, y, depth] = project(&calibration, Vector3::from(centre));
         assert!((x - 511.5).abs() + (y - 511.5).abs() + (depth - l).abs() < 1e-6);
     }
     let frames = list_frames(&folder, "frames/A").unwrap();
