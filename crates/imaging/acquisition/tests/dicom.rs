@@ -246,7 +246,7 @@ fn object8(columns: u16, rows: u16, frames: &str) -> InMemDicomObject {
         (tags::COLUMNS, columns),
         (tags::ROWS, rows),
     ] {
-        set(&mut o, tag, VR::US, value as u16);
+        set(&mut o, tag, VR::US, value);
     }
     set(&mut o, tags::NUMBER_OF_FRAMES, VR::IS, frames);
     o
