@@ -72,6 +72,16 @@ pub enum Origin {
     Corner,
 }
 
+impl Origin {
+    /// The word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Centre => "centre",
+            Self::Corner => "corner",
+        }
+    }
+}
+
 /// `[[body]]`: a bone or an implant part.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -50,11 +50,13 @@ struct Found {
     films: Vec<String>,
     calibrations: Vec<(String, CalibrationFormat)>,
     distortions: Vec<String>,
-    /// File, unit that gives a plausible size, bytes.
-    meshes: Vec<(String, Option<LengthUnit>, u64)>,
+    meshes: Vec<FoundMesh>,
     starts: Vec<String>,
     files: usize,
 }
+
+/// File, unit that gives a plausible size, bytes.
+type FoundMesh = (String, Option<LengthUnit>, u64);
 
 /// A recording: its name, and each view's name and pictures.
 type Trial = (String, Vec<(String, String)>);
@@ -293,7 +295,7 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
 
 /// One table a mesh; of meshes that differ by a number at the end only the largest, the others as comments.
 fn compose_bodies(found: &Found, out: &mut String, missing: &mut Vec<String>) {
-    let mut bodies: BTreeMap<String, Vec<&(String, Option<LengthUnit>, u64)>> = BTreeMap::new();
+    let mut bodies: BTreeMap<String, Vec<&FoundMesh>> = BTreeMap::new();
     for mesh in &found.meshes {
         let base = stem(&mesh.0).trim_end_matches(|c: char| c.is_ascii_digit() || "_-. ".contains(c));
         bodies.entry(plain(if base.is_empty() { stem(&mesh.0) } else { base })).or_default().push(mesh);

@@ -70,7 +70,7 @@ fn header(views: &[&str]) -> Vec<String> {
         .map(str::to_owned)
         .collect();
     for view in views {
-        names.extend(["rms_px", "rms_mm", "matched_share"].map(|what| format!("{view}_{what}")));
+        names.extend(["rms_px", "rms_mm", "matched_share", "inset_px"].map(|what| format!("{view}_{what}")));
     }
     names.extend(["sigma_t_mm".to_owned(), "sigma_r_deg".to_owned()]);
     for (i, (a, unit_a)) in TWIST.iter().enumerate() {
@@ -116,8 +116,13 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
     for view in 0..study.views.len() {
         let fit = trial.frames.iter().position(|(v, _)| *v == view).and_then(|i| found?.views.get(i));
         match fit {
-            Some(f) => cells.extend([fixed(f.rms_px, 4), fixed(f.rms_mm, 5), fixed(f.matched_share, 4)]),
-            None => cells.extend(std::iter::repeat_n(String::new(), 3)),
+            Some(f) => cells.extend([
+                fixed(f.rms_px, 4),
+                fixed(f.rms_mm, 5),
+                fixed(f.matched_share, 4),
+                fixed(f.inset_px, 4),
+            ]),
+            None => cells.extend(std::iter::repeat_n(String::new(), 4)),
         }
     }
     match found {
@@ -167,7 +172,7 @@ mod tests {
         assert_eq!(covariances.len(), 21);
         assert_eq!((covariances[0].as_str(), covariances[3].as_str()), ("cov_tx_tx_mm2", "cov_tx_rx_mm_rad"));
         assert_eq!(covariances[20], "cov_rz_rz_rad2");
-        assert_eq!(names[14..17], ["A_rms_px", "A_rms_mm", "A_matched_share"]);
+        assert_eq!(names[14..18], ["A_rms_px", "A_rms_mm", "A_matched_share", "A_inset_px"]);
     }
 
     #[test]

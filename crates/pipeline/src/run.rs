@@ -79,9 +79,12 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         tracing::warn!("{warning}");
     }
     for view in &prepared.study.views {
-        let origin = format!("{:?}", view.pixel_origin).to_lowercase();
+        let origin = view.pixel_origin.word();
         let file = prepared.study.relative(&view.calibration);
-        tracing::debug!("view {}: {file} counts pixels from the {origin} of the first one", view.name);
+        tracing::info!(
+            "view {}: {file}, whose pixels are counted from the {origin} of the first one",
+            view.name
+        );
     }
     let steps = Steps { prepared: &prepared, store: &store, context };
     let progress = Progress::new("Matching", prepared.jobs.len());
@@ -282,7 +285,7 @@ fn provenance(prepared: &Prepared) -> Provenance {
     let text = |result: Result<String, toml::ser::Error>| result.unwrap_or_default();
     let mut inputs = Vec::new();
     for (view, calibration) in study.views.iter().zip(&prepared.calibrations) {
-        let origin = format!("{:?}", view.pixel_origin).to_lowercase();
+        let origin = view.pixel_origin.word();
         let distortion = view.distortion.as_ref().map(|d| format!(", {}", study.relative(d)));
         let file = study.relative(&view.calibration);
         let name =
@@ -312,4 +315,38 @@ fn write(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<()
         write_if_changed(&path, &bytes).map_err(|source| RunError::Write { path: slashes(&path), source })?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn body(result: Result<Match, String>) -> BodyOutcome {
+        let start_pose = biplane_geometry::Pose::identity();
+        BodyOutcome { body: 0, start: crate::outcome::StartKind::File, start_pose, result }
+    }
+
+    #[test]
+    fn counts_are_added_in_the_order_of_the_steps() {
+        let frame = |ran| Frame {
+            outcome: FrameOutcome {
+                trial: 0,
+                label: "1".into(),
+                time_s: None,
+                bodies: vec![body(Err("why".into()))],
+                overlays: vec![],
+            },
+            failures: vec![],
+            warnings: vec!["w".into()],
+            counts: [StepCount { cached: 1, ran, failed: 0 }, StepCount::default(), StepCount::default()],
+            inputs: vec![("b".into(), "2".into()), ("a".into(), "1".into())],
+        };
+        let mut provenance = Provenance { parameters: vec![], inputs: vec![("c".into(), "3".into())] };
+        let outcome = gather([frame(2), frame(3)].into_iter(), &["first".into()], &mut provenance);
+        assert_eq!(outcome.steps[0], (SEGMENT, StepCount { cached: 2, ran: 5, failed: 0 }));
+        assert_eq!(outcome.warnings, ["first", "w", "w"]);
+        assert_eq!(outcome.verdicts(), [0, 0, 2]);
+        let names: Vec<&str> = provenance.inputs.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["a", "b", "c"]);
+    }
 }

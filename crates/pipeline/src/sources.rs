@@ -3,7 +3,7 @@
 //! A file whose size and time of change are those of the last look has the content it had then: a run in which nothing
 //! is to do opens no picture. `.biplane/inputs.json` holds, for each file (and picture in it) and reader setting, the
 //! content hash and a few facts. It is dropped whole when the readers' code changes. A file changed less than
-//! [`SETTLED`] before it was read could change again without its time changing (coarse clocks), so it is not trusted yet.
+//! two seconds before it was read could change again without its time changing (coarse clocks), so it is not trusted yet.
 //!
 //! A wrong entry cannot make a wrong result: before a stage runs, the store holds what was read against the hash.
 

@@ -35,6 +35,9 @@ pub enum ItemError {
     Failed(String),
 }
 
+/// Why an item would run, and its output if it is there.
+pub type Explained<A> = Result<(Explanation, Option<Stored<A>>), ItemError>;
+
 impl ItemError {
     fn of(error: impl std::fmt::Display) -> Self {
         Self::Failed(error.to_string())
@@ -239,11 +242,7 @@ impl Steps<'_> {
     ///
     /// # Errors
     /// The picture cannot be used, or the store cannot.
-    pub fn explain_segment(
-        &self,
-        job: &Job,
-        slot: usize,
-    ) -> Result<(Explanation, Option<Stored<Curves>>), ItemError> {
+    pub fn explain_segment(&self, job: &Job, slot: usize) -> Explained<Curves> {
         let facts = self.picture(job, slot)?;
         let parts = KeyParts::of::<Segment>(
             &self.prepared.segment,
@@ -256,24 +255,14 @@ impl Steps<'_> {
     ///
     /// # Errors
     /// The store cannot be read.
-    pub fn explain_match(
-        &self,
-        job: &Job,
-        place: usize,
-        curves: &[Stored<Curves>],
-    ) -> Result<(Explanation, Option<Stored<Match>>), ItemError> {
+    pub fn explain_match(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> Explained<Match> {
         let promised = self.match_promised(job, place, curves);
         let parts = KeyParts::of::<MatchBody>(&self.prepared.matching, &promised);
         let item = self.item(job, &self.prepared.study.bodies[job.bodies[place].0].name);
         self.explain::<MatchBody>(MATCH, &item, &parts)
     }
 
-    fn explain<S: Stage>(
-        &self,
-        step: &str,
-        item: &Item,
-        parts: &KeyParts,
-    ) -> Result<(Explanation, Option<Stored<S::Output>>), ItemError> {
+    fn explain<S: Stage>(&self, step: &str, item: &Item, parts: &KeyParts) -> Explained<S::Output> {
         let why = self.store.explain::<S>(step, item, parts).map_err(ItemError::of)?;
         let found = if why.cached() {
             self.store.get::<S::Output>(parts.key()).map_err(ItemError::of)?

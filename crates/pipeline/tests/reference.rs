@@ -1,5 +1,7 @@
 //! The schema and the reference in `docs/` are what the program's types say. `BIPLANE_REGENERATE=1` rewrites them.
 
+#![allow(clippy::unwrap_used)]
+
 use std::path::Path;
 
 fn same(name: &str, text: &str) {

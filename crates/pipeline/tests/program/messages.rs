@@ -1,8 +1,6 @@
 //! What the program says of a wrong `pipeline.toml` or wrong inputs: where, what, and what to do.
 
-mod scene;
-
-use scene::{HEADER, PIPELINE, Scene, row};
+use crate::scene::{HEADER, PIPELINE, Scene, row};
 
 /// Runs a study whose pipeline file has `from` replaced by `to`; it must end with code 2 and say all of `expected`.
 fn refuses(from: &str, to: &str, expected: &[&str]) {
@@ -142,7 +140,7 @@ fn a_calibration_and_a_mesh_that_cannot_be_read_are_both_told() {
 #[test]
 fn a_missing_pipeline_file_says_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
-    let (code, _, said) = scene::run(folder.path(), &["run"]);
+    let (code, _, said) = crate::scene::run(folder.path(), &["run"]);
     assert_eq!(code, 2);
     assert!(said.starts_with("pipeline.toml: ") && said.contains("biplane init"), "{said}");
 }

@@ -1,8 +1,6 @@
 //! A whole study through the program: results, caching, edits, failures that stop nothing else.
 
-mod scene;
-
-use scene::{HEADER, SIZE, Scene, row, truth};
+use crate::scene::{HEADER, SIZE, Scene, row, truth};
 
 /// A column of `results/poses.csv`.
 fn column(scene: &Scene, name: &str) -> Vec<String> {
@@ -147,6 +145,29 @@ fn results_can_be_starts_and_are_shown_by_status() {
     assert!(status.contains("3 good, 0 doubtful, 0 failed (results/poses.csv)"), "{status}");
     let (_, cleaned, _) = scene.biplane(&["clean"]);
     assert!(cleaned.starts_with("freed 9 entries"), "{cleaned}");
+}
+
+#[test]
+fn a_stopped_run_leaves_the_results_alone_and_the_next_one_ends_it() {
+    let scene = Scene::new();
+    let context = biplane_stage::Context::new();
+    context.cancel();
+    let study = || biplane::study::Study::load(&scene.path("pipeline.toml")).unwrap();
+    let error = biplane::run::run(study(), 1, &context).unwrap_err();
+    assert!(error.to_string().starts_with("stopped: 0 of 3 frames are finished"), "{error}");
+    assert!(!scene.path("results").exists());
+    let (_, outcome) = biplane::run::run(study(), 1, &biplane_stage::Context::new()).unwrap();
+    assert_eq!(outcome.verdicts(), [3, 0, 0]);
+}
+
+#[test]
+fn one_view_is_a_study_too() {
+    let scene = Scene::new();
+    scene.edit("[fluoroscope.B]\ncalibration = \"B.txt\"\n", "");
+    scene.edit(", B = \"frames/B\"", "");
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert!(code < 2, "{out}{err}");
+    assert!(out.contains("segment 3 run, 0 cached; match 3 run, 0 cached; overlay 3 run, 0 cached"), "{out}");
 }
 
 #[test]

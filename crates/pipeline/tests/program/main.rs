@@ -1,0 +1,6 @@
+//! The program as its users meet it: run on a study made on the spot.
+#![allow(clippy::unwrap_used)]
+
+mod messages;
+mod scene;
+mod study;
