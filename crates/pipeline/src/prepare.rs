@@ -81,6 +81,11 @@ pub struct Model {
 }
 
 impl Model {
+    /// Its file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// The mesh.
     ///
     /// # Errors

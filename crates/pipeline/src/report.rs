@@ -150,8 +150,64 @@ fn url(path: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+    use crate::outcome::{BodyOutcome, FrameOutcome, StartKind};
+    use crate::study::{Body, Trial, View};
+
+    fn study() -> Study {
+        let view = |name: &str| View {
+            name: name.into(),
+            calibration: "c".into(),
+            pixel_origin: crate::config::Origin::Centre,
+            distortion: None,
+        };
+        Study {
+            root: "/study".into(),
+            name: "<script> & co".into(),
+            views: vec![view("A"), view("B")],
+            bodies: vec![Body { name: "femur".into(), mesh: "m".into(), units: crate::config::Units::Mm }],
+            trials: vec![Trial {
+                name: "lunge".into(),
+                frames: vec![(0, "a".into()), (1, "b".into())],
+                pair_by: crate::config::PairBy::Number,
+                offset: 0,
+                frame_rate_hz: None,
+                starts: None,
+                bodies: vec![0],
+            }],
+            segment: Default::default(),
+            matching: Default::default(),
+            output: "/study/results".into(),
+        }
+    }
+
+    #[test]
+    fn two_thousand_frames_are_one_page_of_escaped_text_and_lazy_pictures() {
+        let frame = |i: usize| FrameOutcome {
+            trial: 0,
+            label: format!("{i:04}"),
+            time_s: Some(i as f64 / 100.0),
+            bodies: vec![BodyOutcome {
+                body: 0,
+                start: StartKind::File,
+                start_pose: biplane_geometry::Pose::identity(),
+                result: Err("a < b".into()),
+            }],
+            overlays: vec![(0, format!("overlays/lunge/{i:04}_A.png").into())],
+        };
+        let outcome = Outcome { frames: (0..2000).map(frame).collect(), ..Outcome::default() };
+        let provenance = Provenance { parameters: vec![], inputs: vec![("x.png".into(), "00".into())] };
+        let page = report_html(&study(), &outcome, &provenance).unwrap();
+        assert!(page.contains("&lt;script&gt; &amp; co") && !page.contains("<script>"), "escaped");
+        assert!(page.contains("not matched: a &lt; b"));
+        assert_eq!(page.matches("loading=\"lazy\" src=\"overlays").count(), 2000);
+        assert_eq!(page.matches("<tr class=\"failed-row\">").count(), 2000);
+        assert!(!page.contains("/study") && !page.contains("http"), "no absolute path, no network");
+        assert!(page.len() < 4_000_000, "{} bytes", page.len());
+    }
+
     #[test]
     fn odd_names_still_make_a_link() {
-        assert_eq!(super::url("overlays/a b/x#1_é.png"), "overlays/a%20b/x%231_%C3%A9.png");
+        assert_eq!(url("overlays/a b/x#1_é.png"), "overlays/a%20b/x%231_%C3%A9.png");
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! A wrong entry cannot make a wrong result: before a stage runs, the store holds what was read against the hash.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
@@ -104,6 +104,7 @@ pub struct InputIndex {
     file: PathBuf,
     old: Tables,
     new: Mutex<Tables>,
+    distrusted: Mutex<BTreeSet<String>>,
 }
 
 impl InputIndex {
@@ -116,7 +117,7 @@ impl InputIndex {
             .and_then(|bytes| serde_json::from_slice::<Tables>(&bytes).ok())
             .filter(|t| t.format == FORMAT && t.code == CODE)
             .unwrap_or_default();
-        Self { root: root.to_owned(), file, old, new: Mutex::default() }
+        Self { root: root.to_owned(), file, old, new: Mutex::default(), distrusted: Mutex::default() }
     }
 
     /// What is known of picture `index` of a file; reads it if it may have changed.
@@ -171,12 +172,19 @@ impl InputIndex {
         Ok(facts)
     }
 
+    /// A file turned out to hold something else than the index says, though its size and time of change are the same
+    /// (or it changed while the program ran): the next run reads it again.
+    pub fn distrust(&self, path: &Path) {
+        self.distrusted.lock().unwrap_or_else(PoisonError::into_inner).insert(self.relative(path));
+    }
+
     /// Writes the index. What was not asked for in this run is kept unless the run was a `whole` one.
     ///
     /// # Errors
     /// The operating system refuses.
     pub fn save(self, whole: bool) -> std::io::Result<()> {
-        let Self { old, new, file, .. } = self;
+        let Self { old, new, file, distrusted, .. } = self;
+        let distrusted = distrusted.into_inner().unwrap_or_else(PoisonError::into_inner);
         let mut tables = new.into_inner().unwrap_or_else(PoisonError::into_inner);
         if !whole {
             for (key, known) in old.frames {
@@ -186,6 +194,12 @@ impl InputIndex {
                 tables.meshes.entry(key).or_insert(known);
             }
         }
+        let trusted = |key: &String| {
+            let of = |path: &String| key.strip_prefix(path).is_some_and(|rest| rest.starts_with(['#', ' ']));
+            !distrusted.iter().any(of)
+        };
+        tables.frames.retain(|key, _| trusted(key));
+        tables.meshes.retain(|key, _| trusted(key));
         tables.format = FORMAT;
         tables.code = CODE.to_owned();
         let mut bytes = serde_json::to_vec_pretty(&tables)?;

@@ -42,13 +42,6 @@ impl ItemError {
     fn of(error: impl std::fmt::Display) -> Self {
         Self::Failed(error.to_string())
     }
-
-    fn of_execute<S: std::fmt::Display, L: std::fmt::Display>(error: ExecuteError<S, L>) -> Self {
-        match error {
-            ExecuteError::Cancelled => Self::Cancelled,
-            other => Self::of(other),
-        }
-    }
 }
 
 /// A study, its store, and how to run.
@@ -115,7 +108,7 @@ impl Steps<'_> {
         self.store
             .execute::<Segment, _>(SEGMENT, &item, &self.prepared.segment, &promised, load, self.context)
             .map(|done| (done.output, done.how))
-            .map_err(ItemError::of_execute)
+            .map_err(|e| self.failed(job, Some(slot), e))
     }
 
     fn match_promised(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> MatchInputs<Promised> {
@@ -156,7 +149,7 @@ impl Steps<'_> {
         let done = self
             .store
             .execute::<MatchBody, _>(MATCH, &item, &self.prepared.matching, &promised, load, self.context)
-            .map_err(ItemError::of_execute)?;
+            .map_err(|e| self.failed(job, None, e))?;
         Ok((self.read(&done.output).map_err(ItemError::Failed)?, done.how))
     }
 
@@ -208,7 +201,7 @@ impl Steps<'_> {
                 self.context,
             )
             .map(|done| (done.output, done.how))
-            .map_err(ItemError::of_execute)
+            .map_err(|e| self.failed(job, Some(slot), e))
     }
 
     /// Why a picture would be drawn on.
@@ -224,6 +217,30 @@ impl Steps<'_> {
         let promised = self.overlay_promised(job, slot, &self.picture(job, slot)?, matches);
         let parts = KeyParts::of::<Overlay>(&self.prepared.overlay, &promised);
         self.explain::<Overlay>(OVERLAY, &self.item(job, self.view(job, slot).1), &parts).map(|(why, _)| why)
+    }
+
+    /// For people; a file that is not what the index of inputs said is read again next time.
+    fn failed<S: std::fmt::Display, L: std::fmt::Display>(
+        &self,
+        job: &Job,
+        slot: Option<usize>,
+        error: ExecuteError<S, L>,
+    ) -> ItemError {
+        match &error {
+            ExecuteError::Cancelled => return ItemError::Cancelled,
+            ExecuteError::InputChanged { role } if role == "frame" => {
+                if let Some(slot) = slot {
+                    self.prepared.index.distrust(&job.pictures[slot].path);
+                }
+            }
+            ExecuteError::InputChanged { .. } => {
+                for (body, ..) in &job.bodies {
+                    self.prepared.index.distrust(self.prepared.meshes[*body].path());
+                }
+            }
+            _ => {}
+        }
+        ItemError::of(error)
     }
 
     /// Reads a stored output; a damaged one is taken away, so that the next run makes it again.

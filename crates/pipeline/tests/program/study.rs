@@ -161,6 +161,36 @@ fn a_stopped_run_leaves_the_results_alone_and_the_next_one_ends_it() {
 }
 
 #[test]
+fn a_picture_that_is_not_what_was_hashed_is_an_error_once_and_then_read_again() {
+    let scene = Scene::new();
+    // The next frame's picture with the size and time of this one: both made as long with bytes after their end.
+    let path = scene.path("frames/A/0001.png");
+    let mut bytes = std::fs::read(&path).unwrap();
+    let mut other = std::fs::read(scene.path("frames/A/0002.png")).unwrap();
+    let longest = bytes.len().max(other.len());
+    bytes.resize(longest, 0);
+    other.resize(longest, 0);
+    scene.write("frames/A/0001.png", &bytes);
+    let modified = std::fs::metadata(&path).unwrap().modified().unwrap();
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    assert_eq!(scene.biplane(&["clean", "--all"]).0, 0);
+    std::fs::write(&path, &other).unwrap();
+    std::fs::File::options().write(true).open(&path).unwrap().set_modified(modified).unwrap();
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 1);
+    assert!(
+        out.contains("segment/squat/0001/A: input frame changed while the program ran; run it again"),
+        "{out}"
+    );
+    let (_, out, _) = scene.biplane(&["run"]);
+    // Its curves are there already: they go by content, and the next frame has this very picture.
+    assert!(
+        !out.contains("changed while") && out.contains("segment 0 run, 6 cached; match 1 run, 2 cached"),
+        "{out}"
+    );
+}
+
+#[test]
 fn one_view_is_a_study_too() {
     let scene = Scene::new();
     scene.edit("[fluoroscope.B]\ncalibration = \"B.txt\"\n", "");
