@@ -20,6 +20,8 @@ pub enum PixelOrigin {
 /// Pixels here always have the centre of the first one at (0, 0), whatever the file said.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
+    /// The view's name in the study, to name it in messages.
+    pub view: String,
     /// Columns and rows of its images.
     pub size: [usize; 2],
     /// The X-ray source, mm.
@@ -47,9 +49,9 @@ impl Content for Calibration {
     const KIND: &'static str = "calibration";
     const SCHEMA: u32 = 1;
     fn content_hash(&self) -> ContentHash {
-        let Self { size, source, matrix, distortion } = self;
+        let Self { view, size, source, matrix, distortion } = self;
         let mut h = ContentHasher::new(Self::KIND, Self::SCHEMA);
-        h.unsigned(size[0] as u64).unsigned(size[1] as u64);
+        h.text(view).unsigned(size[0] as u64).unsigned(size[1] as u64);
         for v in source.iter().chain(matrix.iter().flatten()) {
             h.float(*v);
         }

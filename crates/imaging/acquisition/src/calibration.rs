@@ -120,11 +120,12 @@ pub fn read_calibration(
 ) -> Result<Calibration, CalibrationError> {
     let path = path.as_ref();
     let text = read_text(path)?;
-    match CalibrationFormat::of_text(&text) {
-        Some(CalibrationFormat::MayaCam2) => mayacam::parse(path, &text, pixel_origin),
-        Some(CalibrationFormat::PlaneJson) => plane::parse(path, &text, view),
-        None => Err(CalibrationError::UnknownFormat { path: path.to_owned(), what: guess(&text) }),
-    }
+    let calibration = match CalibrationFormat::of_text(&text) {
+        Some(CalibrationFormat::MayaCam2) => mayacam::parse(path, &text, pixel_origin)?,
+        Some(CalibrationFormat::PlaneJson) => plane::parse(path, &text, view)?,
+        None => return Err(CalibrationError::UnknownFormat { path: path.to_owned(), what: guess(&text) }),
+    };
+    Ok(Calibration { view: view.to_owned(), ..calibration })
 }
 
 /// What a text that is not read seems to be.

@@ -180,7 +180,7 @@ fn planes(path: &Path, text: &str) -> Result<Description, InspectError> {
 
 /// Takes `matrix = K R` apart again: `w` is a depth, so the third row is the unit normal.
 fn camera(d: &mut Description, prefix: &str, calibration: &Calibration) {
-    let Calibration { size, source, matrix, distortion } = calibration;
+    let Calibration { view: _, size, source, matrix, distortion } = calibration;
     let m = Matrix3::from_fn(|i, j| matrix[i][j]);
     let rows = [0, 1, 2].map(|i| m.row(i).transpose());
     let normal: Vector3<f64> = rows[2];

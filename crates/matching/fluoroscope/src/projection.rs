@@ -121,6 +121,7 @@ mod tests {
         let m = k * r.matrix();
         let row = |i: usize| [m[(i, 0)], m[(i, 1)], m[(i, 2)]];
         Fluoroscope::from(&Calibration {
+            view: "A".to_owned(),
             size: [1024, 1024],
             source: [-900.0, 500.0, 80.0],
             matrix: [row(0), row(1), row(2)],

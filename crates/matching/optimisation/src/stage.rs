@@ -255,8 +255,7 @@ impl Stage for MatchBody {
                 View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
             })
             .collect();
-        // Views have numbers here; their names belong to the study.
-        let names: Vec<String> = (1..=views.len()).map(|n| n.to_string()).collect();
+        let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
         match_body(&mesh, &views, &names, &inputs.start.0, params, || context.cancelled())
     }
 }

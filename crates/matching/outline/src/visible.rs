@@ -255,6 +255,7 @@ mod tests {
     fn view(mirror: bool) -> Fluoroscope {
         let sx = if mirror { -1.0 } else { 1.0 };
         Fluoroscope::from(&Calibration {
+            view: "A".to_owned(),
             size: [400, 400],
             source: [0.0, 0.0, -1000.0],
             matrix: [[1000.0 * sx, 0.0, 200.0], [0.0, 1000.0, 200.0], [0.0, 0.0, 1.0]],

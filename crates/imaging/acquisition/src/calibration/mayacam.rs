@@ -180,6 +180,7 @@ pub(super) fn parse(path: &Path, text: &str, origin: PixelOrigin) -> Result<Cali
     };
     let m = k * r;
     Ok(Calibration {
+        view: String::new(),
         size,
         source: (-(r.transpose() * t)).into(),
         matrix: [0, 1, 2].map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]),

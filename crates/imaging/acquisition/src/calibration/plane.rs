@@ -119,6 +119,7 @@ pub(super) fn parse(path: &Path, text: &str, view: &str) -> Result<Calibration, 
     };
     let m = inverse * distance;
     Ok(Calibration {
+        view: view.to_owned(),
         size,
         source: source.into(),
         matrix: [0, 1, 2].map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]),
