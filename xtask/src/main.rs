@@ -1,12 +1,205 @@
 //! `cargo xtask COMMAND`: thin, calls the crates.
 //!
-//! `cargo xtask run pipeline.toml` is `biplane run pipeline.toml`; every other command of the program passes through too.
+//! `cargo xtask run pipeline.toml` is `biplane run pipeline.toml`, and every other command of the program passes through
+//! too. What only the project itself needs is here: `validate`, `compare` and `starts`.
 
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use biplane::prepare::Prepared;
+use biplane::results::pose_line;
+use biplane::study::Study;
+use biplane::tables::{PoseTable, same_frame};
+use biplane_acquisition::meshes::{LengthUnit, read_mesh};
+use biplane_validation::{
+    Check, Distribution, STARTS, SceneError, StartOffset, knee, read_body, read_reference, real_knee,
+};
+use clap::{Parser, Subcommand, ValueEnum};
+
+#[derive(Parser)]
+#[command(name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Measure accuracy from seeded starts against poses that this program did not make, and hold it to its limits.
+    Validate {
+        /// What to measure.
+        #[arg(value_enum, default_values_t = [Scenes::Knee, Scenes::Real])]
+        scenes: Vec<Scenes>,
+        /// Starts for each frame.
+        #[arg(long, default_value_t = STARTS.count)]
+        count: usize,
+        /// How far off each start is, mm.
+        #[arg(long, default_value_t = STARTS.translation_mm)]
+        mm: f64,
+        /// How far off each start is, degrees.
+        #[arg(long, default_value_t = STARTS.rotation_deg)]
+        deg: f64,
+        /// Seed of the starts.
+        #[arg(long, default_value_t = STARTS.seed)]
+        seed: u64,
+    },
+    /// Compare a study's results/poses.csv with known poses; fails beyond the limits.
+    Compare {
+        /// The study.
+        pipeline: PathBuf,
+        /// The body.
+        #[arg(long)]
+        body: String,
+        /// CSV: frame, then the 16 numbers of world_from_model.
+        #[arg(long)]
+        reference: PathBuf,
+        /// Largest displacement of the mesh's centroid in any frame, mm.
+        #[arg(long)]
+        limit_mm: f64,
+        /// Largest angle in any frame, degrees.
+        #[arg(long)]
+        limit_deg: f64,
+    },
+    /// Print start poses (CSV) that lie exactly so far from known poses, in random directions.
+    Starts {
+        /// The trial they are for.
+        trial: String,
+        /// The bodies, each with its mesh (mm) and its known poses: BODY=MESH.stl,REFERENCE.csv
+        #[arg(required = true)]
+        bodies: Vec<String>,
+        /// How far off, mm.
+        #[arg(long, default_value_t = STARTS.translation_mm)]
+        mm: f64,
+        /// How far off, degrees.
+        #[arg(long, default_value_t = STARTS.rotation_deg)]
+        deg: f64,
+        /// Seed.
+        #[arg(long, default_value_t = STARTS.seed)]
+        seed: u64,
+    },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Scenes {
+    /// The example study: simulated, truth known.
+    Knee,
+    /// The real knee implant, where its data folder is present.
+    Real,
+}
+
 fn main() -> ExitCode {
-    // Commands of this tool alone are matched here, before the program's.
-    let arguments = std::env::args_os().skip(1);
-    biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(arguments))
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let own = ["validate", "compare", "starts"];
+    if !arguments.get(1).is_some_and(|a| own.iter().any(|o| a == o)) {
+        let passed = arguments.into_iter().skip(1);
+        return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
+    }
+    let done = match Arguments::parse().task {
+        Task::Validate { scenes, count, mm, deg, seed } => {
+            let starts = StartOffset { translation_mm: mm, rotation_deg: deg, count, seed };
+            validate(&scenes, &starts)
+        }
+        Task::Compare { pipeline, body, reference, limit_mm, limit_deg } => {
+            compare(&pipeline, &body, &reference, limit_mm, limit_deg)
+        }
+        Task::Starts { trial, bodies, mm, deg, seed } => {
+            let offset = StartOffset { translation_mm: mm, rotation_deg: deg, count: 1, seed };
+            starts(&trial, &bodies, &offset)
+        }
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(3)
+        }
+    }
+}
+
+/// The project's folder.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+}
+
+fn validate(scenes: &[Scenes], starts: &StartOffset) -> Result<bool, SceneError> {
+    let mut beyond = Vec::new();
+    for scene in scenes {
+        let checks = match scene {
+            Scenes::Knee => knee(),
+            Scenes::Real => real_knee(root()).unwrap_or_else(|| {
+                println!("real knee: left out, its data folder ../shared/data/real is not here");
+                Vec::new()
+            }),
+        };
+        for check in checks {
+            let check = Check { starts: *starts, ..check };
+            let begun = std::time::Instant::now();
+            let summary = check.measure(root(), None)?;
+            println!(
+                "{}: {} starts a frame, each {} mm and {} degrees off, seed {} ({:.1} s)",
+                check.name,
+                starts.count,
+                starts.translation_mm,
+                starts.rotation_deg,
+                starts.seed,
+                begun.elapsed().as_secs_f64()
+            );
+            println!("{summary}");
+            beyond.extend(check.passed_limits(&summary));
+        }
+    }
+    for line in &beyond {
+        println!("BEYOND ITS LIMIT: {line}");
+    }
+    Ok(beyond.is_empty())
+}
+
+fn compare(
+    pipeline: &Path,
+    body: &str,
+    reference: &Path,
+    limit_mm: f64,
+    limit_deg: f64,
+) -> Result<bool, SceneError> {
+    let prepared = Prepared::of(Study::load(pipeline)?)?;
+    let (_, mesh) = read_body(&prepared, pipeline, body)?;
+    let results = prepared.study.output.join("poses.csv");
+    let table = PoseTable::read(&results).map_err(|e| SceneError::Mesh(e.to_string()))?;
+    let known = read_reference(reference)?;
+    let centroid = mesh.area_centroid();
+    let errors: Vec<_> = known
+        .iter()
+        .filter_map(|(label, pose)| {
+            let row = table.rows.iter().find(|r| r.body == body && same_frame(&r.frame, label))?;
+            Some(row.pose.error_against(pose, &centroid))
+        })
+        .collect();
+    let mm = Distribution::of(errors.iter().map(|e| e.translation_mm).collect());
+    let deg = Distribution::of(errors.iter().map(|e| e.rotation_rad.to_degrees()).collect());
+    println!("{body}: {} of {} frames with a known pose", errors.len(), known.len());
+    println!("  translation, mm   {mm}; limit {limit_mm}");
+    println!("  rotation, degrees {deg}; limit {limit_deg}");
+    Ok(!errors.is_empty() && errors.len() == known.len() && mm.worst <= limit_mm && deg.worst <= limit_deg)
+}
+
+fn starts(trial: &str, bodies: &[String], offset: &StartOffset) -> Result<bool, SceneError> {
+    println!("{}", biplane::tables::EXAMPLE_HEADER);
+    for (number, text) in bodies.iter().enumerate() {
+        let parts = text.split_once('=').and_then(|(body, files)| Some((body, files.split_once(',')?)));
+        let Some((body, (mesh, reference))) = parts else {
+            eprintln!("{text}: expected BODY=MESH.stl,REFERENCE.csv");
+            return Ok(false);
+        };
+        let mesh = read_mesh(mesh, LengthUnit::Millimetres).map_err(|e| SceneError::Mesh(e.to_string()))?;
+        let centroid = mesh.model.0.area_centroid();
+        for (index, (label, pose)) in read_reference(Path::new(reference))?.iter().enumerate() {
+            // Bodies of one frame are off in different directions.
+            for start in offset.draw(pose, &centroid, index + 1000 * number) {
+                println!("{}", pose_line(trial, label, body, start));
+            }
+        }
+    }
+    Ok(true)
 }

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use biplane_artifact::{Match, Verdict};
+use biplane_artifact::Match;
 use biplane_stage::{Context, Hashed, How, Store, StoreError};
 use rayon::prelude::*;
 
@@ -173,7 +173,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         let result = match result {
             Ok((found, how)) => {
                 count(&mut frame, 1, &name, &how);
-                let result = Ok(named(&found, steps, job));
+                let result = Ok(Match::clone(&found));
                 matches.push(found);
                 result
             }
@@ -242,18 +242,6 @@ fn count(frame: &mut Frame, step: usize, item: &str, how: &How) {
             frame.warnings.push(format!("{item} was made again: {damage}"));
         }
     }
-}
-
-/// The match with its views' numbers turned into names: the stage knows no names.
-fn named(found: &Match, steps: &Steps<'_>, job: &Job) -> Match {
-    let mut found = found.clone();
-    if found.verdict != Verdict::Good {
-        for slot in (0..job.pictures.len()).rev() {
-            let (_, view) = steps.view(job, slot);
-            found.reason = found.reason.replace(&format!("view {}", slot + 1), &format!("view {view}"));
-        }
-    }
-    found
 }
 
 fn gather(frames: impl Iterator<Item = Frame>, warnings: &[String], provenance: &mut Provenance) -> Outcome {

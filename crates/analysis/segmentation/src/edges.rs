@@ -25,7 +25,8 @@ pub struct EdgeMap {
 fn cubic(p: [f32; 4], t: f32) -> f32 {
     p[1] + 0.5
         * t
-        * (p[2] - p[0] + t * (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3] + t * (3.0 * (p[1] - p[2]) + p[3] - p[0])))
+        * (p[2] - p[0]
+            + t * (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3] + t * (3.0 * (p[1] - p[2]) + p[3] - p[0])))
 }
 
 /// Value at a point at least 2 px inside the picture.
@@ -105,7 +106,8 @@ fn crest(
     if here < ahead.min(behind) || (ahead > here && behind > here) {
         return None;
     }
-    let (la, lh, lb) = (f64::from(ahead.max(1e-6)).ln(), f64::from(here).ln(), f64::from(behind.max(1e-6)).ln());
+    let (la, lh, lb) =
+        (f64::from(ahead.max(1e-6)).ln(), f64::from(here).ln(), f64::from(behind.max(1e-6)).ln());
     let curvature = la - 2.0 * lh + lb;
     if curvature >= -1e-6 {
         return None;
@@ -203,7 +205,13 @@ mod tests {
         let f = |t: f64| (-t * t / 2.0).exp() / (2.0 * std::f64::consts::PI).sqrt();
         let sum: f64 = (0..=n)
             .map(|i| {
-                let weight = if i == 0 || i == n { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+                let weight = if i == 0 || i == n {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
                 weight * f(-8.0 + h * f64::from(i))
             })
             .sum();

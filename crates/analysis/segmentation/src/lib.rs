@@ -15,4 +15,4 @@ mod stage;
 
 pub use edges::{EdgeMap, find_edges};
 pub use link::link;
-pub use stage::{Segment, SegmentError, SegmentInputs, SegmentParams};
+pub use stage::{Segment, SegmentError, SegmentInputs, SegmentParams, curves};

@@ -99,15 +99,22 @@ impl Stage for Segment {
     type Error = SegmentError;
 
     fn run(inputs: &SegmentInputs, params: &SegmentParams, _: &Context) -> Result<Curves, SegmentError> {
-        params.check()?;
-        let frame = &inputs.frame;
-        let scale = 255.0 / ((1_u32 << frame.bits.clamp(1, 16)) - 1) as f32;
-        let samples = frame.samples.iter().map(|&s| f32::from(s) * scale).collect();
-        let map = find_edges(frame.width, frame.height, samples, params);
-        if map.points.is_empty() {
-            let (width, height) = (frame.width, frame.height);
-            return Err(SegmentError::NoEdge { width, height, high: params.high_threshold });
-        }
-        Ok(Curves::rounded(link(&map, params.min_points)))
+        curves(&inputs.frame, params)
     }
+}
+
+/// The edge curves of a frame.
+///
+/// # Errors
+/// A parameter out of range, or a frame without edges.
+pub fn curves(frame: &Frame, params: &SegmentParams) -> Result<Curves, SegmentError> {
+    params.check()?;
+    let scale = 255.0 / ((1_u32 << frame.bits.clamp(1, 16)) - 1) as f32;
+    let samples = frame.samples.iter().map(|&s| f32::from(s) * scale).collect();
+    let map = find_edges(frame.width, frame.height, samples, params);
+    if map.points.is_empty() {
+        let (width, height) = (frame.width, frame.height);
+        return Err(SegmentError::NoEdge { width, height, high: params.high_threshold });
+    }
+    Ok(Curves::rounded(link(&map, params.min_points)))
 }

@@ -1,72 +1,74 @@
-//! A recorded or simulated trial with reference poses, read and segmented by the product's own code.
+//! One body of a study with a pose to hold the answers against, read and segmented by the product's own code.
 
 use std::path::{Path, PathBuf};
 
-use biplane_acquisition::calibration::{CalibrationError, read_calibration, read_distortion_csv};
-use biplane_acquisition::images::{ImageError, read_frame};
-use biplane_acquisition::meshes::{LengthUnit, MeshFileError, read_mesh};
-use biplane_artifact::{Curves, PixelOrigin};
+use biplane::prepare::{InputErrors, Prepared};
+use biplane::study::{Study, StudyError};
+use biplane::tables::same_frame;
+use biplane_acquisition::images::ImageError;
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Mesh, Pose};
 use biplane_optimisation::{EdgeField, View};
 use biplane_outline::RimMesh;
-use biplane_segmentation::{SegmentParams, find_edges, link};
+use biplane_segmentation::{SegmentError, curves};
 use rayon::prelude::*;
 
-/// The files of one view.
-#[derive(Debug, Clone)]
-pub struct ViewFiles {
-    /// The view's name.
-    pub name: String,
-    /// Its calibration.
-    pub calibration: PathBuf,
-    /// Samples of its distortion, if its pictures are not corrected.
-    pub distortion: Option<PathBuf>,
-    /// Folder of its frames, named by the reference's labels.
-    pub frames: PathBuf,
-    /// Extension of its frames.
-    pub extension: String,
-}
-
-/// The files of a scene.
-#[derive(Debug, Clone)]
-pub struct SceneFiles {
-    /// One or more views.
-    pub views: Vec<ViewFiles>,
-    /// Where the calibrations count pixels from.
-    pub pixel_origin: PixelOrigin,
-    /// The body, mm.
-    pub mesh: PathBuf,
-    /// CSV with a header, a row a frame: label and 16 numbers of `world_from_model`, row by row.
-    pub reference: PathBuf,
-}
-
-/// One body over the frames of a scene.
+/// One body over the frames of a study.
 pub struct Scene {
-    /// The mesh.
+    /// The mesh, mm.
     pub mesh: Mesh,
     /// The mesh as the matcher has it.
     pub rim: RimMesh,
     /// View names.
     pub names: Vec<String>,
-    /// Label, reference pose and views of each frame.
-    pub frames: Vec<(String, Pose, Vec<View>)>,
+    /// The frames that have a reference.
+    pub frames: Vec<Posed>,
+}
+
+/// A frame with its views and the pose to compare with.
+pub struct Posed {
+    /// The frame's trial.
+    pub trial: String,
+    /// Its label.
+    pub label: String,
+    /// `world_from_model`, from somebody else.
+    pub reference: Pose,
+    /// One a view.
+    pub views: Vec<View>,
 }
 
 /// Why a scene could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// A calibration.
+    /// The pipeline file.
     #[error(transparent)]
-    Calibration(#[from] CalibrationError),
+    Study(#[from] StudyError),
+    /// Its inputs.
+    #[error(transparent)]
+    Inputs(#[from] InputErrors),
     /// A frame.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// The mesh.
+    /// A frame without edges.
     #[error(transparent)]
-    Mesh(#[from] MeshFileError),
+    Segment(#[from] SegmentError),
+    /// A mesh.
+    #[error("{0}")]
+    Mesh(String),
+    /// The body is not in the study.
+    #[error("{path}: the study has no body `{body}`; it has {known}")]
+    Body {
+        /// The pipeline file.
+        path: PathBuf,
+        /// What was asked for.
+        body: String,
+        /// What there is.
+        known: String,
+    },
     /// The reference.
-    #[error("{path}: row {row} is not a label and a 4x4 matrix of a rotation and a translation")]
+    #[error(
+        "{path}: row {row} is not a label and the 16 numbers of a rotation and a translation, row by row"
+    )]
     Reference {
         /// The file.
         path: PathBuf,
@@ -75,8 +77,11 @@ pub enum SceneError {
     },
 }
 
-/// Reads a table of labels and 4x4 matrices.
-fn read_reference(path: &Path) -> Result<Vec<(String, Pose)>, SceneError> {
+/// Reads a CSV with a header and, a row a frame, the label and 16 numbers of `world_from_model`, row by row.
+///
+/// # Errors
+/// The file cannot be read, or a row is something else.
+pub fn read_reference(path: &Path) -> Result<Vec<(String, Pose)>, SceneError> {
     let bad = |row: usize| SceneError::Reference { path: path.to_path_buf(), row };
     let mut reader = csv::Reader::from_path(path).map_err(|_| bad(0))?;
     let mut poses = Vec::new();
@@ -90,42 +95,55 @@ fn read_reference(path: &Path) -> Result<Vec<(String, Pose)>, SceneError> {
     Ok(poses)
 }
 
+/// A body's mesh as the study reads it.
+///
+/// # Errors
+/// The study, its inputs or the mesh cannot be read, or it has no such body.
+pub fn read_body(prepared: &Prepared, path: &Path, body: &str) -> Result<(usize, Mesh), SceneError> {
+    let bodies = &prepared.study.bodies;
+    let Some(index) = bodies.iter().position(|b| b.name == body) else {
+        let known: Vec<&str> = bodies.iter().map(|b| b.name.as_str()).collect();
+        return Err(SceneError::Body {
+            path: path.to_owned(),
+            body: body.to_owned(),
+            known: known.join(", "),
+        });
+    };
+    Ok((index, prepared.meshes[index].load().map_err(SceneError::Mesh)?.0.clone()))
+}
+
 impl Scene {
-    /// Reads and segments everything.
+    /// Reads and segments the frames of the study at `pipeline` that `reference` has poses of `body` for.
     ///
     /// # Errors
-    /// The first file that cannot be read.
-    pub fn load(files: &SceneFiles, segment: &SegmentParams) -> Result<Self, SceneError> {
-        let mesh = read_mesh(&files.mesh, LengthUnit::Millimetres)?.model.0;
-        let mut fluoroscopes = Vec::new();
-        for view in &files.views {
-            let mut calibration = read_calibration(&view.calibration, &view.name, files.pixel_origin)?;
-            if let Some(path) = &view.distortion {
-                calibration.distortion = Some(read_distortion_csv(path)?);
-            }
-            fluoroscopes.push(Fluoroscope::from(&calibration));
-        }
-        let frames = read_reference(&files.reference)?
+    /// The first thing that cannot be read.
+    pub fn load(pipeline: &Path, body: &str, reference: &Path) -> Result<Self, SceneError> {
+        let prepared = Prepared::of(Study::load(pipeline)?)?;
+        let (index, mesh) = read_body(&prepared, pipeline, body)?;
+        let poses = read_reference(reference)?;
+        let study = &prepared.study;
+        let fluoroscopes: Vec<Fluoroscope> =
+            prepared.calibrations.iter().map(|c| Fluoroscope::from(&**c)).collect();
+        let wanted: Vec<_> = prepared
+            .jobs
+            .iter()
+            .filter(|job| job.bodies.iter().any(|b| b.0 == index))
+            .filter_map(|job| Some((job, poses.iter().find(|p| same_frame(&p.0, &job.label))?.1)))
+            .collect();
+        let frames = wanted
             .into_par_iter()
-            .map(|(label, pose)| {
-                let views = files
-                    .views
-                    .iter()
-                    .zip(&fluoroscopes)
-                    .map(|(view, fluoroscope)| {
-                        let frame = read_frame(view.frames.join(format!("{label}.{}", view.extension)), 0)?;
-                        let scale = 255.0 / ((1_u32 << frame.bits) - 1) as f32;
-                        let samples = frame.samples.iter().map(|&s| f32::from(s) * scale).collect();
-                        let map = find_edges(frame.width, frame.height, samples, segment);
-                        let curves = Curves::rounded(link(&map, segment.min_points));
-                        let edges = EdgeField::new(&curves, fluoroscope.distortion());
-                        Ok(View { fluoroscope: fluoroscope.clone(), edges })
-                    })
-                    .collect::<Result<Vec<_>, SceneError>>()?;
-                Ok((label, pose, views))
+            .map(|(job, reference)| {
+                let trial = &study.trials[job.trial];
+                let views = trial.frames.iter().zip(&job.pictures).map(|((view, _), source)| {
+                    let curves = curves(&prepared.read(source)?, &study.segment)?;
+                    let fluoroscope = fluoroscopes[*view].clone();
+                    Ok(View { edges: EdgeField::new(&curves, fluoroscope.distortion()), fluoroscope })
+                });
+                let views = views.collect::<Result<Vec<_>, SceneError>>()?;
+                Ok(Posed { trial: trial.name.clone(), label: job.label.clone(), reference, views })
             })
             .collect::<Result<Vec<_>, SceneError>>()?;
-        let rim = RimMesh::new(&mesh);
-        Ok(Self { mesh, rim, names: files.views.iter().map(|v| v.name.clone()).collect(), frames })
+        let names = study.views.iter().map(|v| v.name.clone()).collect();
+        Ok(Self { rim: RimMesh::new(&mesh), mesh, names, frames })
     }
 }

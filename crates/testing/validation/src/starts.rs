@@ -8,6 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
 use crate::Scene;
+use crate::scene::Posed;
 
 /// How starts are drawn: exactly this far off, in directions drawn evenly over the sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +58,8 @@ fn direction(random: &mut Xoshiro256PlusPlus) -> Vector3 {
 impl StartOffset {
     /// The start poses around a reference: depend on seed, frame and number alone.
     pub fn draw(&self, reference: &Pose, centroid: &Point3, frame: usize) -> Vec<Pose> {
-        let mut random = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_mul(1_000_003).wrapping_add(frame as u64));
+        let mut random =
+            Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_mul(1_000_003).wrapping_add(frame as u64));
         (0..self.count)
             .map(|_| {
                 let twist = Twist {
@@ -77,21 +79,24 @@ pub fn attempts(scene: &Scene, offset: &StartOffset, params: &MatchParams) -> Ve
         .frames
         .par_iter()
         .enumerate()
-        .flat_map_iter(|(index, (label, reference, views))| {
-            offset.draw(reference, &centroid, index).into_iter().enumerate().filter_map(move |(start, from)| {
-                // Nothing cancels here, so every match gives an answer.
-                let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
-                let pose = Pose::from(answer.pose);
-                let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
-                Some(Attempt {
-                    frame: label.clone(),
-                    start,
-                    error: pose.error_against(reference, &centroid),
-                    difference: (turn, pose.transform(&centroid) - reference.transform(&centroid)),
-                    mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
-                    answer,
-                })
-            })
+        .flat_map_iter(|(index, posed)| {
+            let Posed { label, reference, views, .. } = posed;
+            offset.draw(reference, &centroid, index).into_iter().enumerate().filter_map(
+                move |(start, from)| {
+                    // Nothing cancels here, so every match gives an answer.
+                    let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
+                    let pose = Pose::from(answer.pose);
+                    let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
+                    Some(Attempt {
+                        frame: label.clone(),
+                        start,
+                        error: pose.error_against(reference, &centroid),
+                        difference: (turn, pose.transform(&centroid) - reference.transform(&centroid)),
+                        mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
+                        answer,
+                    })
+                },
+            )
         })
         .collect()
 }

@@ -65,7 +65,8 @@ impl Summary {
         let good = |a: &&Attempt| a.verdict() == Verdict::Good;
         let count = |v: Verdict| attempts.iter().filter(|a| a.verdict() == v).count();
         let of = |f: fn(&Attempt) -> f64| Distribution::of(attempts.iter().map(f).collect());
-        let of_good = |f: fn(&Attempt) -> f64| Distribution::of(attempts.iter().filter(good).map(f).collect());
+        let of_good =
+            |f: fn(&Attempt) -> f64| Distribution::of(attempts.iter().filter(good).map(f).collect());
         Self {
             count: attempts.len(),
             verdicts: [count(Verdict::Good), count(Verdict::Doubtful), count(Verdict::Failed)],
