@@ -2,6 +2,9 @@
 //!
 //! A view's frames are named by a folder (all images in it), a pattern (`frames/A/*.png`), or one file of one frame or
 //! many. They come in natural order: runs of digits compare as numbers, so `9.tif` is before `10.tif`.
+//!
+//! A damaged picture among those of a folder is still one frame of the list: it fails when it is read, and the others
+//! keep their places. Which frames a damaged file of many held cannot be known, so beside such files it is an error.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -66,10 +69,12 @@ pub enum FramesError {
 
 /// Lists the frames that `named` names, relative to the folder `base`.
 ///
-/// In a folder, and among what a pattern finds, files that are not images are passed over; hidden ones are too.
+/// In a folder, and among what a pattern finds, files that are not images are passed over; hidden ones are too. A file
+/// that is named like an image or starts like one, but cannot be opened, counts as one frame.
 ///
 /// # Errors
-/// Nothing of that name, no image among it, or an image that cannot be opened.
+/// Nothing of that name, no image among it, or an image that cannot be opened where that leaves unknown which frames
+/// there are: it is the only file, none of the files can be opened, or others hold many frames.
 pub fn list_frames(base: impl AsRef<Path>, named: &str) -> Result<Vec<FrameSource>, FramesError> {
     let path = base.as_ref().join(named);
     if path.is_file() {
@@ -85,7 +90,7 @@ pub fn list_frames(base: impl AsRef<Path>, named: &str) -> Result<Vec<FrameSourc
     let count = files.len();
     let mut images = Vec::with_capacity(count);
     for file in files {
-        if is_image(&file)? {
+        if is_image(&file) {
             images.push(file);
         }
     }
@@ -132,22 +137,40 @@ fn files_of_pattern(base: &Path, pattern: &str) -> Result<Vec<PathBuf>, FramesEr
     Ok(files)
 }
 
-fn is_image(path: &Path) -> Result<bool, FramesError> {
-    let io = |source| FramesError::Io { path: path.to_owned(), source };
-    let mut start = Vec::with_capacity(132);
-    File::open(path).map_err(io)?.take(132).read_to_end(&mut start).map_err(io)?;
-    Ok(ImageFormat::of_start(&start).is_some())
+/// Whether a file is an image or is meant to be one: by its first bytes, or by its name (an empty or overwritten file, or
+/// one that may not be read, is a frame that is missing, not a file to pass over).
+fn is_image(path: &Path) -> bool {
+    let named = path.extension().is_some_and(|e| {
+        let e = e.to_string_lossy().to_lowercase();
+        ["png", "tif", "tiff", "dcm", "jpg", "jpeg", "bmp"].contains(&e.as_str())
+    });
+    let starts = || {
+        let mut start = Vec::with_capacity(132);
+        let read = File::open(path).and_then(|file| file.take(132).read_to_end(&mut start));
+        read.is_ok() && ImageFormat::of_start(&start).is_some()
+    };
+    named || starts()
 }
 
 fn of_files(paths: &[PathBuf]) -> Result<Vec<FrameSource>, FramesError> {
     let mut sources = Vec::with_capacity(paths.len());
     let mut several = false;
+    let mut damaged = None;
+    let mut opened = 0_usize;
     for path in paths {
-        let file = ImageFile::open(path)?;
-        let info = file.info();
-        several |= info.frames > 1;
+        let (frames, times_s) = match ImageFile::open(path) {
+            Ok(file) => {
+                opened += 1;
+                (file.info().frames, file.info().times_s.clone())
+            }
+            Err(error) => {
+                damaged.get_or_insert(error);
+                (1, Vec::new())
+            }
+        };
+        several |= frames > 1;
         let digits = last_digits(path);
-        for index_in_file in 0..info.frames {
+        for index_in_file in 0..frames {
             let number = digits.as_deref().and_then(|d| d.parse().ok());
             let place = format!("{:04}", sources.len());
             sources.push(FrameSource {
@@ -155,9 +178,12 @@ fn of_files(paths: &[PathBuf]) -> Result<Vec<FrameSource>, FramesError> {
                 index_in_file,
                 number,
                 label: digits.clone().filter(|_| number.is_some()).unwrap_or(place),
-                time_s: if info.frames > 1 { info.times_s.get(index_in_file).copied() } else { None },
+                time_s: if frames > 1 { times_s.get(index_in_file).copied() } else { None },
             });
         }
+    }
+    if let Some(error) = damaged.filter(|_| several || opened == 0) {
+        return Err(error.into());
     }
     if several {
         for (place, source) in sources.iter_mut().enumerate() {

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use biplane_acquisition::frames::{FrameSource, PairBy, PairError, list_frames, pair};
+use biplane_acquisition::images::read_frame;
 use image::{GrayImage, Luma};
 use tempfile::TempDir;
 use tiff::encoder::{TiffEncoder, colortype};
@@ -157,4 +158,37 @@ fn a_number_twice_or_none_is_an_error_that_names_the_files() {
     assert!(matches!(&error, PairError::NoNumber { view, .. } if view == "A"));
     assert!(error.to_string().contains("x.tif has no number in its name"), "{error}");
     assert_eq!(pair(&views, PairBy::Index, 0).unwrap().pairs.len(), 1);
+}
+
+/// Fault: a TIFF cut short before its directory, and a file of zero bytes, stopped the whole list or were passed over.
+#[test]
+fn a_damaged_picture_among_others_is_one_frame_that_fails_when_it_is_read() {
+    let folder = TempDir::new().unwrap();
+    for n in ["A/1.png", "A/2.png", "A/5.png"] {
+        picture(&folder, n);
+    }
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    // The directory of this TIFF would lie at byte 1000.
+    let cut = b"II*\0\xe8\x03\0\0 pixels";
+    write("A/3.tif", cut);
+    write("A/4.png", b"");
+    let frames = list_frames(folder.path(), "A").unwrap();
+    assert_eq!(labels(&frames), ["1", "2", "3", "4", "5"]);
+    let why = |i: usize| read_frame(&frames[i].path, 0).unwrap_err().to_string();
+    assert!(why(2).contains("3.tif: frame 0 is cut short"), "{}", why(2));
+    assert!(why(3).contains("4.png is not an image") && why(3).contains("the file is empty"), "{}", why(3));
+    assert!(read_frame(&frames[4].path, 0).is_ok());
+
+    // Where the list hangs on it, it is an error.
+    assert!(
+        list_frames(folder.path(), "A/3.tif").is_err() && list_frames(folder.path(), "A/[34].*").is_err()
+    );
+    let mut stack = Vec::new();
+    let mut encoder = TiffEncoder::new(std::io::Cursor::new(&mut stack)).unwrap();
+    for _ in 0..2 {
+        encoder.write_image::<colortype::Gray8>(2, 2, &[0; 4]).unwrap();
+    }
+    write("A/6.tif", &stack);
+    let text = list_frames(folder.path(), "A").unwrap_err().to_string();
+    assert!(text.contains("3.tif"), "{text}");
 }
