@@ -10,6 +10,7 @@ pub mod diagnostics;
 pub mod init;
 pub mod logging;
 pub mod look;
+pub mod made;
 pub mod outcome;
 pub mod overlay;
 pub mod prepare;

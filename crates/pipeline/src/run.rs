@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::diagnostics::slashes;
 use crate::logging::Progress;
+use crate::made::Made;
 use crate::outcome::{BodyOutcome, Failure, FrameOutcome, Outcome, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
@@ -65,6 +66,8 @@ struct Frame {
     warnings: Vec<String>,
     counts: [StepCount; STEPS.len()],
     inputs: Vec<(String, String)>,
+    /// Overlays and the hashes of their bytes.
+    made: Vec<(String, String)>,
 }
 
 /// Runs everything that is to do on `threads` threads (0: one a core) and writes the results.
@@ -102,12 +105,19 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     drop(progress);
     let done = frames.iter().flatten().count();
     let stopped = done < frames.len();
+    let made = Made::of(frames.iter().flatten().flat_map(|f| f.made.iter().cloned()));
     let mut provenance = provenance(&prepared);
     let outcome = gather(frames.into_iter().flatten(), &prepared.warnings, &mut provenance);
     let (study, jobs) = (prepared.study, prepared.jobs.len());
     let hidden = study.hidden();
     let index = prepared.index.save(!stopped);
     index.map_err(|source| RunError::Write { path: slashes(&hidden.join("inputs.json")), source })?;
+    let removed = made.save(&study.output, !stopped);
+    let removed = removed
+        .map_err(|source| RunError::Write { path: slashes(&study.output.join("overlays")), source })?;
+    if removed > 0 {
+        tracing::info!("removed {removed} overlay(s) of earlier runs that are not of this study any more");
+    }
     if stopped {
         return Err(RunError::Stopped { done, frames: jobs });
     }
@@ -132,6 +142,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         warnings: Vec::new(),
         counts: [StepCount::default(); STEPS.len()],
         inputs: Vec::new(),
+        made: Vec::new(),
     };
     let slots: Vec<_> =
         (0..job.pictures.len()).into_par_iter().map(|slot| steps.segment(job, slot)).collect();
@@ -218,6 +229,7 @@ fn overlays(steps: &Steps<'_>, job: &Job, matches: &[Hashed<Match>], frame: &mut
                 count(frame, 2, &name, &how);
                 match copy_if_other(stored.path(), &study.output.join(&place)) {
                     Ok(()) => {
+                        frame.made.push((slashes(&place), stored.hash().to_hex()));
                         frame.outcome.overlays.push((view, place));
                         continue;
                     }
@@ -328,6 +340,7 @@ mod tests {
             warnings: vec!["w".into()],
             counts: [StepCount { cached: 1, ran, failed: 0 }, StepCount::default(), StepCount::default()],
             inputs: vec![("b".into(), "2".into()), ("a".into(), "1".into())],
+            made: vec![],
         };
         let mut provenance = Provenance { parameters: vec![], inputs: vec![("c".into(), "3".into())] };
         let outcome = gather([frame(2), frame(3)].into_iter(), &["first".into()], &mut provenance);

@@ -213,3 +213,26 @@ fn init_writes_a_file_that_runs_and_never_overwrites_one() {
     let (code, out, err) = scene.biplane(&["run"]);
     assert_eq!(code, 0, "{out}{err}\n{}", scene.read("pipeline.toml"));
 }
+
+/// Fault: overlays of frames that were taken out of the study stayed among the results as if they were of it.
+#[test]
+fn overlays_of_frames_that_are_gone_go_and_a_persons_files_stay() {
+    let scene = Scene::new();
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    scene.write("results/notes.txt", b"mine");
+    scene.write("results/overlays/squat/notes.txt", b"mine");
+    for view in ["A", "B"] {
+        std::fs::remove_file(scene.path(&format!("frames/{view}/0001.png"))).unwrap();
+    }
+    let (code, _, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(err.contains("removed 2 overlay(s) of earlier runs"), "{err}");
+    let overlay = |frame: &str| scene.path(&format!("results/overlays/squat/{frame}.png")).exists();
+    assert!(!overlay("0001_A") && !overlay("0001_B") && overlay("0000_A") && overlay("0002_B"));
+    scene.edit("name = \"squat\"", "name = \"lunge\"");
+    scene.write("starts.csv", scene.read("starts.csv").replace("squat", "lunge").as_bytes());
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    let left: Vec<_> = std::fs::read_dir(scene.path("results/overlays/squat")).unwrap().collect();
+    assert_eq!(left.len(), 1, "only the notes: {left:?}");
+    assert_eq!(scene.read("results/notes.txt"), "mine");
+}
