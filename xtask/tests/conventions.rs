@@ -1,6 +1,9 @@
 //! The conventions of `docs/conventions.md` that no crate's own tests hold, through the public functions of the crates:
 //! numbers come from the example study, from a scene that another program made, or from arithmetic written out here.
 
+// Clippy lets `#[test]` functions unwrap, but not what they call.
+#![allow(clippy::unwrap_used)]
+
 use std::path::{Path, PathBuf};
 
 use biplane_acquisition::calibration::{read_calibration, read_distortion_csv};
