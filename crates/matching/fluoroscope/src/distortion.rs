@@ -159,7 +159,8 @@ mod tests {
             worst = worst.max((ideal - truth(&p)).norm());
             assert!((d.recorded(&ideal).unwrap() - p).norm() < 1e-8);
             let h = 1e-4;
-            let numeric = (d.ideal(&(p + Vector2::new(h, 0.0))) - d.ideal(&(p - Vector2::new(h, 0.0)))) / (2.0 * h);
+            let numeric =
+                (d.ideal(&(p + Vector2::new(h, 0.0))) - d.ideal(&(p - Vector2::new(h, 0.0)))) / (2.0 * h);
             assert!((numeric - derivative.column(0)).norm() < 1e-6);
         }
         // Third differences of this cubic map over 24 px at the grid's border, where samples are continued straight.

@@ -86,7 +86,8 @@ impl Fluoroscope {
         let p = self.project(point)?;
         let m = &self.matrix;
         let derivative =
-            Matrix2x3::from_rows(&[m.row(0) - m.row(2) * p.pixel.x, m.row(1) - m.row(2) * p.pixel.y]) / p.depth;
+            Matrix2x3::from_rows(&[m.row(0) - m.row(2) * p.pixel.x, m.row(1) - m.row(2) * p.pixel.y])
+                / p.depth;
         Some((p, derivative))
     }
 

@@ -69,7 +69,13 @@ impl EdgeField {
 
     /// The nearest edge point within `radius` px whose direction has at least `min_cosine` with `direction` (unit, dark
     /// to bright).
-    pub fn nearest(&self, at: &Point2, direction: &Vector2, radius: f64, min_cosine: f64) -> Option<&EdgePoint> {
+    pub fn nearest(
+        &self,
+        at: &Point2,
+        direction: &Vector2,
+        radius: f64,
+        min_cosine: f64,
+    ) -> Option<&EdgePoint> {
         let mut best: Option<&EdgePoint> = None;
         let mut best_squared = radius * radius;
         let (cx, cy) = (self.cell(at, 0) as isize, self.cell(at, 1) as isize);
@@ -117,7 +123,10 @@ mod tests {
             .map(|_| {
                 let a: f64 = random.random_range(0.0..std::f64::consts::TAU);
                 EdgePoint {
-                    position: Point2::new(random.random_range(100.0..400.0), random.random_range(-50.0..300.0)),
+                    position: Point2::new(
+                        random.random_range(100.0..400.0),
+                        random.random_range(-50.0..300.0),
+                    ),
                     direction: Vector2::new(a.cos(), a.sin()),
                     strength: 1.0,
                     sigma_px: 0.1,

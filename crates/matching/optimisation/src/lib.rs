@@ -23,5 +23,5 @@ mod starts;
 
 pub use field::EdgeField;
 pub use judge::{Limits, judge};
-pub use refine::{Refined, RefineParams, View, refine};
-pub use stage::{MatchBody, MatchError, MatchInputs, MatchParams, match_body};
+pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};
+pub use stage::{Contrast, MatchBody, MatchError, MatchInputs, MatchParams, match_body};

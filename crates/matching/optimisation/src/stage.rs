@@ -35,6 +35,9 @@ pub enum Contrast {
     Bright,
 }
 
+/// Steps of a descent with its last search radius at most; most need five to ten.
+const FINAL_STEPS: u32 = 30;
+
 /// How poses are searched and judged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -111,7 +114,9 @@ pub enum MatchError {
         expected: &'static str,
     },
     /// Curves and calibrations are not one a view.
-    #[error("{curves} views with curves but {calibrations} calibrations: expected one of each a view, and at least one")]
+    #[error(
+        "{curves} views with curves but {calibrations} calibrations: expected one of each a view, and at least one"
+    )]
     Views {
         /// Sets of curves.
         curves: usize,
@@ -165,6 +170,20 @@ impl MatchParams {
         within("good_sigma_deg", good_sigma_deg, 0.0, any, "0 or more degrees")
     }
 
+    /// How a descent searches.
+    pub fn search(&self) -> RefineParams {
+        RefineParams {
+            search_px: self.search_px,
+            final_search_px: self.final_search_px,
+            contrast: match self.contrast {
+                Contrast::Dark => 1.0,
+                Contrast::Bright => -1.0,
+            },
+            inset_px: self.inset_px,
+            most_steps: FINAL_STEPS,
+        }
+    }
+
     fn limits(&self) -> Limits {
         Limits {
             matched_share: (self.good_share, self.failed_share),
@@ -186,15 +205,7 @@ pub fn match_body(
     params: &MatchParams,
     cancelled: impl Fn() -> bool,
 ) -> Result<Match, MatchError> {
-    let search = RefineParams {
-        search_px: params.search_px,
-        final_search_px: params.final_search_px,
-        inset_px: params.inset_px,
-        contrast: match params.contrast {
-            Contrast::Dark => 1.0,
-            Contrast::Bright => -1.0,
-        },
-    };
+    let search = params.search();
     let limits = params.limits();
     let sigma_rad = params.retry_deg.to_radians();
     let others =

@@ -223,7 +223,8 @@ impl Outline {
         }
         // A front face lies to the left of its boundary seen from the source, a back face to the right. In pixels with y
         // down, (y, -x) is to the left of (x, y) for a picture that does not keep orientation.
-        let inward_sign = if s.front != 0 { f64::from(s.front.signum()) } else { -f64::from(s.back.signum()) };
+        let inward_sign =
+            if s.front != 0 { f64::from(s.front.signum()) } else { -f64::from(s.back.signum()) };
         let outward = Vector2::new(along.y, -along.x) * (side * inward_sign / length);
         let parts = ((length / sampling.step_px).ceil() as usize).clamp(1, 1000);
         for part in 0..parts {
@@ -319,7 +320,8 @@ mod tests {
         assert!((near / whole - 1.0).abs() < 1e-9, "{near} {whole}");
         // With faces missing on both sides over the same pixels there is a hole, and its outline counts.
         let total = 2 * 60 * 120;
-        let both = traced(&ball(60, |k| k < 1200 || k >= total - 1200), &Pose::identity(), &view(false)).length_px();
+        let both =
+            traced(&ball(60, |k| k < 1200 || k >= total - 1200), &Pose::identity(), &view(false)).length_px();
         assert!(both > whole * 1.1, "{both} {whole}");
     }
 
@@ -353,7 +355,8 @@ mod tests {
             let [a, b, c] = mesh.corners(t).map(|p| view.project(&pose.transform(&p)).unwrap().pixel * 4.0);
             let cross = |o: &Point2, p: &Point2, q: &Point2| (p - o).perp(&(q - o));
             let area = cross(&a, &b, &c);
-            let (low, high) = (a.coords.inf(&b.coords).inf(&c.coords), a.coords.sup(&b.coords).sup(&c.coords));
+            let (low, high) =
+                (a.coords.inf(&b.coords).inf(&c.coords), a.coords.sup(&b.coords).sup(&c.coords));
             for y in low.y.ceil() as usize..=high.y.floor() as usize {
                 for x in low.x.ceil() as usize..=high.x.floor() as usize {
                     let q = Point2::new(x as f64, y as f64);

@@ -52,7 +52,10 @@ impl Check {
     pub fn passed_limits(&self, summary: &Summary) -> Vec<String> {
         let mut found = Vec::new();
         if summary.wrong_called_good > 0 {
-            found.push(format!("{}: {} wrong poses called good, limit 0", self.name, summary.wrong_called_good));
+            found.push(format!(
+                "{}: {} wrong poses called good, limit 0",
+                self.name, summary.wrong_called_good
+            ));
         }
         let Some(limits) = self.limits else { return found };
         let mut hold = |what: &str, value: f64, limit: f64| {

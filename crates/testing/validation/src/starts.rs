@@ -2,7 +2,8 @@
 
 use biplane_artifact::{Match, Verdict};
 use biplane_geometry::{Point3, Pose, PoseError, Twist, Vector3};
-use biplane_optimisation::{MatchParams, match_body};
+use biplane_optimisation::{Evidence, MatchParams, assess, match_body};
+use nalgebra::{Matrix6, Vector6};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
@@ -38,6 +39,10 @@ pub struct Attempt {
     pub difference: (Vector3, Vector3),
     /// Mean target registration error over the vertices, mm.
     pub mean_target_mm: f64,
+    /// Squared error over the stated covariance: 6 on average where the covariance is right.
+    pub normalised_squared: f64,
+    /// Root mean square residual of the outline at the reference pose, px: the larger view's.
+    pub reference_rms_px: f64,
 }
 
 impl Attempt {
@@ -86,12 +91,21 @@ pub fn attempts(scene: &Scene, offset: &StartOffset, params: &MatchParams) -> Ve
                     // Nothing cancels here, so every match gives an answer.
                     let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
                     let pose = Pose::from(answer.pose);
+                    let assessed = assess(&scene.rim, views, reference, &params.search());
+                    let rms = |e: &Evidence| (e.squared / e.matched_px.max(1e-9)).sqrt();
                     let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
+                    let moved = pose.transform(&centroid) - reference.transform(&centroid);
+                    let error = Vector6::new(moved.x, moved.y, moved.z, turn.x, turn.y, turn.z);
+                    let covariance = Matrix6::from_fn(|i, j| answer.covariance[i][j]);
                     Some(Attempt {
                         frame: label.clone(),
                         start,
                         error: pose.error_against(reference, &centroid),
-                        difference: (turn, pose.transform(&centroid) - reference.transform(&centroid)),
+                        difference: (turn, moved),
+                        normalised_squared: covariance
+                            .try_inverse()
+                            .map_or(f64::NAN, |i| error.dot(&(i * error))),
+                        reference_rms_px: assessed.evidence.iter().map(rms).fold(0.0, f64::max),
                         mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
                         answer,
                     })

@@ -52,6 +52,12 @@ pub struct Summary {
     pub rotation_deg: Distribution,
     /// Of all matches, mm.
     pub mean_target_mm: Distribution,
+    /// Mean of the squared error over the stated covariance, of those called good: 6 where the covariance is right.
+    pub good_normalised: f64,
+    /// Root mean square residual of the answers, px, the larger view's.
+    pub rms_px: Distribution,
+    /// The same of the reference poses.
+    pub reference_rms_px: Distribution,
     /// Of those called good, mm.
     pub good_translation_mm: Distribution,
     /// Of those called good, degrees.
@@ -75,6 +81,12 @@ impl Summary {
             translation_mm: of(|a| a.error.translation_mm),
             rotation_deg: of(|a| a.error.rotation_rad.to_degrees()),
             mean_target_mm: of(|a| a.mean_target_mm),
+            good_normalised: {
+                let good: Vec<f64> = attempts.iter().filter(good).map(|a| a.normalised_squared).collect();
+                good.iter().sum::<f64>() / good.len() as f64
+            },
+            rms_px: of(|a| a.answer.views.iter().map(|v| v.rms_px).fold(0.0, f64::max)),
+            reference_rms_px: of(|a| a.reference_rms_px),
             good_translation_mm: of_good(|a| a.error.translation_mm),
             good_rotation_deg: of_good(|a| a.error.rotation_rad.to_degrees()),
         }
@@ -88,6 +100,13 @@ impl fmt::Display for Summary {
         writeln!(f, "  translation, mm   all {}; good {}", self.translation_mm, self.good_translation_mm)?;
         writeln!(f, "  rotation, degrees all {}; good {}", self.rotation_deg, self.good_rotation_deg)?;
         writeln!(f, "  mTRE, mm          all {}", self.mean_target_mm)?;
+        writeln!(f, "  residual, px      answers {}", self.rms_px)?;
+        writeln!(f, "                    references {}", self.reference_rms_px)?;
+        writeln!(
+            f,
+            "  squared error over stated covariance, good ones: mean {:.1} (6 if the covariance holds all)",
+            self.good_normalised
+        )?;
         write!(
             f,
             "  called good beyond 1 mm or 1 degree: {}; not good though within: {}",
