@@ -272,7 +272,7 @@ impl std::fmt::Display for Unpaired {
         let more = if self.count > self.first.len() { ", ..." } else { "" };
         write!(
             f,
-            "{} frame(s) of view {} have no partner: {}{more}",
+            "{} frame(s) of view {} are left out, since not every other view has the frame taken with them: {}{more}",
             self.count,
             self.view,
             self.first.join(", ")

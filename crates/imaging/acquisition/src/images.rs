@@ -107,10 +107,16 @@ pub enum ImageError {
         /// Its first bytes.
         found: String,
     },
+    /// Not a byte in it.
+    #[error("{} is empty (0 bytes): copy it again from where it was recorded", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file is shorter than what it says it holds.
     #[error(
-        "{}: frame {index} is cut short: the file ends after {length} bytes, before all of its pixels; copy it again \
-         from where it was recorded", path.display()
+        "{}: {} is cut short: the file ends after {length} bytes, before all of its pixels; copy it again \
+         from where it was recorded", path.display(), which(*index)
     )]
     Truncated {
         /// The file.
@@ -121,7 +127,7 @@ pub enum ImageError {
         length: u64,
     },
     /// A format that is read, but not this kind of it.
-    #[error("{}: frame {index} is {what}; {advice}", path.display())]
+    #[error("{}: {} is {what}; {advice}", path.display(), which(*index))]
     Unsupported {
         /// The file.
         path: PathBuf,
@@ -134,8 +140,8 @@ pub enum ImageError {
     },
     /// A picture that is not grey.
     #[error(
-        "{}: frame {index} is a colour picture: at pixel ({x}, {y}) red, green and blue are {} {} {}; an X-ray picture \
-         is grey, so convert it to grey and check that nothing was drawn into it", path.display(), rgb[0], rgb[1], rgb[2]
+        "{}: {} is a colour picture: at pixel ({x}, {y}) red, green and blue are {} {} {}; an X-ray picture \
+         is grey, so convert it to grey and check that nothing was drawn into it", path.display(), which(*index), rgb[0], rgb[1], rgb[2]
     )]
     Colour {
         /// The file.
@@ -150,7 +156,7 @@ pub enum ImageError {
         rgb: [u16; 3],
     },
     /// Something in the file contradicts itself.
-    #[error("{}: frame {index} is damaged: {what}", path.display())]
+    #[error("{}: {} is damaged: {what}", path.display(), which(*index))]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -161,8 +167,8 @@ pub enum ImageError {
     },
     /// More pixels than the file can hold.
     #[error(
-        "{}: frame {index} claims {width} x {height} pixels, which a file of {length} bytes cannot hold (at most {} \
-         pixels are read); the file is damaged", path.display(), MAX_PIXELS
+        "{}: {} claims {width} x {height} pixels, which a file of {length} bytes cannot hold (at most {} \
+         pixels are read); the file is damaged", path.display(), which(*index), MAX_PIXELS
     )]
     Impossible {
         /// The file.
@@ -238,6 +244,9 @@ impl ImageFile {
         let length = file.metadata().map_err(|source| place.io(source))?.len();
         let mut start = Vec::with_capacity(132);
         file.by_ref().take(132).read_to_end(&mut start).map_err(|source| place.io(source))?;
+        if length == 0 {
+            return Err(ImageError::Empty { path: path.to_owned() });
+        }
         let Some(format) = ImageFormat::of_start(&start) else {
             return Err(ImageError::Unknown { path: path.to_owned(), found: describe_start(&start) });
         };
@@ -373,11 +382,13 @@ impl Place<'_> {
     }
 }
 
+/// A picture of a file for messages: most files have one only, of which a number would say nothing.
+fn which(index: usize) -> String {
+    if index == 0 { "the picture".to_owned() } else { format!("frame {index} (counted from 0)") }
+}
+
 /// The first bytes of a file as a message can show them; text is not shown, since it may name someone.
 fn describe_start(start: &[u8]) -> String {
-    if start.is_empty() {
-        return "nothing (the file is empty)".to_owned();
-    }
     let bytes: Vec<String> = start.iter().take(8).map(|b| format!("{b:02x}")).collect();
     format!("the bytes {}", bytes.join(" "))
 }

@@ -108,8 +108,14 @@ fn frames_pair_by_number_and_what_is_left_is_said() {
     assert_eq!(found, [("000", "000.tif", "0.tif"), ("020", "020.tif", "20.tif")]);
     assert_eq!(pairing.pairs[0].sources[1].time_s, Some(0.5));
     let said: Vec<String> = pairing.unpaired.iter().map(ToString::to_string).collect();
-    assert_eq!(said[0], "2 frame(s) of view A have no partner: 010, 030");
-    assert_eq!(said[1], "6 frame(s) of view B have no partner: 40, 41, 42, 43, 44, ...");
+    assert_eq!(
+        said[0],
+        "2 frame(s) of view A are left out, since not every other view has the frame taken with them: 010, 030"
+    );
+    assert_eq!(
+        said[1],
+        "6 frame(s) of view B are left out, since not every other view has the frame taken with them: 40, 41, 42, 43, 44, ..."
+    );
 }
 
 #[test]
@@ -175,8 +181,8 @@ fn a_damaged_picture_among_others_is_one_frame_that_fails_when_it_is_read() {
     let frames = list_frames(folder.path(), "A").unwrap();
     assert_eq!(labels(&frames), ["1", "2", "3", "4", "5"]);
     let why = |i: usize| read_frame(&frames[i].path, 0).unwrap_err().to_string();
-    assert!(why(2).contains("3.tif: frame 0 is cut short"), "{}", why(2));
-    assert!(why(3).contains("4.png is not an image") && why(3).contains("the file is empty"), "{}", why(3));
+    assert!(why(2).contains("3.tif: the picture is cut short"), "{}", why(2));
+    assert!(why(3).contains("4.png is empty"), "{}", why(3));
     assert!(read_frame(&frames[4].path, 0).is_ok());
 
     // Where the list hangs on it, it is an error.

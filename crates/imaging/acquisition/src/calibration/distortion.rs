@@ -66,10 +66,20 @@ fn parse(path: &Path, text: &str) -> Result<DistortionTable, CalibrationError> {
     let (first_y, step_y, rows) =
         axis(samples.iter().map(|s| s[1])).map_err(|e| value(format!("{}: {e}", COLUMNS[1])))?;
     if samples.len() != columns * rows {
+        let place = |s: &[f64; 4]| {
+            let row = ((s[1] - first_y) / step_y).round() as usize;
+            row * columns + ((s[0] - first_x) / step_x).round() as usize
+        };
+        let there: std::collections::BTreeSet<usize> = samples.iter().map(place).collect();
+        let gap = (0..columns * rows).find(|i| !there.contains(i)).map(|i| {
+            let (x, y) = (first_x + step_x * (i % columns) as f64, first_y + step_y * (i / columns) as f64);
+            format!("; the first one missing is that of recorded pixel ({x}, {y})")
+        });
         return Err(value(format!(
-            "{} samples, but a full grid of {columns} x {rows} has {}",
+            "{} samples, but a full grid of {columns} x {rows} has {}{}. Export the table again, whole",
             samples.len(),
-            columns * rows
+            columns * rows,
+            gap.unwrap_or_default()
         )));
     }
     let mut ideal: Vec<Option<[f64; 2]>> = vec![None; columns * rows];

@@ -144,16 +144,22 @@ pub(super) fn parse(path: &Path, text: &str, origin: PixelOrigin) -> Result<Cali
         )));
     }
     let (fx, fy) = (k[(0, 0)], k[(1, 1)]);
-    if fx <= 0.0 || fy <= 0.0 {
+    if fx == 0.0 || fy == 0.0 || k[(1, 0)] != 0.0 || k[(2, 0)] != 0.0 || k[(2, 1)] != 0.0 || k[(2, 2)] != 1.0
+    {
+        let row = |i: usize| format!("{},{},{}", k[(i, 0)], k[(i, 1)], k[(i, 2)]);
+        return Err(value(format!(
+            "lines 5 to 7, the camera matrix: found {} / {} / {}, expected fx,s,cx / 0,fy,cy / 0,0,1; are lines or \
+             columns in another order?",
+            row(0),
+            row(1),
+            row(2)
+        )));
+    }
+    if fx < 0.0 || fy < 0.0 {
         return Err(value(format!(
             "focal lengths fx = {fx}, fy = {fy}; expected both positive: MayaCam 2.0 has the axes of OpenCV (x right, y \
              down, z away from the source), so export the file again rather than change its signs by hand"
         )));
-    }
-    if k[(1, 0)] != 0.0 || k[(2, 0)] != 0.0 || k[(2, 1)] != 0.0 || k[(2, 2)] != 1.0 {
-        return Err(value(
-            "camera matrix is not `fx,s,cx / 0,fy,cy / 0,0,1`; rows and columns swapped?".to_owned(),
-        ));
     }
     let off = (r * r.transpose() - Matrix3::identity()).abs().max();
     if off > 1e-3 {
