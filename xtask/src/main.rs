@@ -13,7 +13,8 @@ use biplane::study::Study;
 use biplane::tables::{PoseTable, same_frame};
 use biplane_acquisition::meshes::{LengthUnit, read_mesh};
 use biplane_validation::{
-    Check, Distribution, STARTS, SceneError, StartOffset, knee, read_body, read_reference, real_knee,
+    Check, Distribution, STARTS, SceneError, StartOffset, knee, noise, read_body, read_reference, real_knee,
+    seen_from,
 };
 use clap::{Parser, Subcommand, ValueEnum};
 
@@ -61,6 +62,33 @@ enum Task {
         #[arg(long)]
         limit_deg: f64,
     },
+    /// Show where one body lies in the frame of another over frames that follow each other, with the poses of
+    /// results/poses.csv and with known poses of the first body, and how much noise each has: needs no truth.
+    Relative {
+        /// The study.
+        pipeline: PathBuf,
+        /// The body.
+        #[arg(long)]
+        body: String,
+        /// The other body.
+        #[arg(long)]
+        seen_from: String,
+        /// CSV: frame, then the 16 numbers of world_from_model of the first body.
+        #[arg(long)]
+        reference: PathBuf,
+        /// First and last frame label, for example 050..060.
+        #[arg(long)]
+        frames: String,
+    },
+    /// Put pictures of the same size side by side at half their size: how the README's picture is made.
+    Picture {
+        /// PNG files, left to right.
+        #[arg(required = true)]
+        pictures: Vec<PathBuf>,
+        /// The PNG to write.
+        #[arg(long)]
+        output: PathBuf,
+    },
     /// Print start poses (CSV) that lie exactly so far from known poses, in random directions.
     Starts {
         /// The trial they are for.
@@ -90,7 +118,7 @@ enum Scenes {
 
 fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let own = ["validate", "compare", "starts"];
+    let own = ["validate", "compare", "relative", "picture", "starts"];
     if !arguments.get(1).is_some_and(|a| own.iter().any(|o| a == o)) {
         let passed = arguments.into_iter().skip(1);
         return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
@@ -103,6 +131,16 @@ fn main() -> ExitCode {
         Task::Compare { pipeline, body, reference, limit_mm, limit_deg } => {
             compare(&pipeline, &body, &reference, limit_mm, limit_deg)
         }
+        Task::Relative { pipeline, body, seen_from, reference, frames } => {
+            relative(&pipeline, &body, &seen_from, &reference, &frames)
+        }
+        Task::Picture { pictures, output } => match side_by_side(&pictures, &output) {
+            Ok(()) => Ok(true),
+            Err(error) => {
+                eprintln!("{error}");
+                Ok(false)
+            }
+        },
         Task::Starts { trial, bodies, mm, deg, seed } => {
             let offset = StartOffset { translation_mm: mm, rotation_deg: deg, count: 1, seed };
             starts(&trial, &bodies, &offset)
@@ -185,6 +223,65 @@ fn compare(
     println!("  translation, mm   {mm}; limit {limit_mm}");
     println!("  rotation, degrees {deg}; limit {limit_deg}");
     Ok(!errors.is_empty() && errors.len() == known.len() && mm.worst <= limit_mm && deg.worst <= limit_deg)
+}
+
+fn relative(
+    pipeline: &Path,
+    body: &str,
+    other: &str,
+    reference: &Path,
+    frames: &str,
+) -> Result<bool, SceneError> {
+    let prepared = Prepared::of(Study::load(pipeline)?)?;
+    let (_, mesh) = read_body(&prepared, pipeline, body)?;
+    let table = PoseTable::read(&prepared.study.output.join("poses.csv"))
+        .map_err(|e| SceneError::Mesh(e.to_string()))?;
+    let centroid = mesh.area_centroid();
+    let (first, last) = frames.split_once("..").unwrap_or((frames, frames));
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    println!("frame  {body}'s centroid in the model frame of {other}, mm: results | reference");
+    for (label, known) in read_reference(reference)? {
+        let row = |name: &str| table.rows.iter().find(|r| r.body == name && same_frame(&r.frame, &label));
+        let (Some(found), Some(base)) = (row(body), row(other)) else { continue };
+        if label.as_str() < first || label.as_str() > last {
+            continue;
+        }
+        let (a, b) =
+            (seen_from(&base.pose, &found.pose, &centroid), seen_from(&base.pose, &known, &centroid));
+        println!("{label:5}  {:8.3} {:8.3} {:8.3} | {:8.3} {:8.3} {:8.3}", a.x, a.y, a.z, b.x, b.y, b.z);
+        ours.push(a);
+        theirs.push(b);
+    }
+    match (noise(&ours), noise(&theirs)) {
+        (Some(a), Some(b)) => {
+            println!("noise  {:8.3} {:8.3} {:8.3} | {:8.3} {:8.3} {:8.3}", a.x, a.y, a.z, b.x, b.y, b.z);
+            Ok(true)
+        }
+        _ => {
+            eprintln!("fewer than four frames with poses of both bodies from {first} to {last}");
+            Ok(false)
+        }
+    }
+}
+
+fn side_by_side(pictures: &[PathBuf], output: &Path) -> image::ImageResult<()> {
+    let halves = pictures
+        .iter()
+        .map(|path| {
+            let full = image::open(path)?;
+            let filter = image::imageops::FilterType::Triangle;
+            Ok(full.resize(full.width() / 2, full.height() / 2, filter).to_rgb8())
+        })
+        .collect::<image::ImageResult<Vec<_>>>()?;
+    let width = halves.iter().map(image::RgbImage::width).sum();
+    let mut joined =
+        image::RgbImage::new(width, halves.iter().map(image::RgbImage::height).max().unwrap_or(0));
+    let mut x = 0;
+    for half in &halves {
+        image::imageops::replace(&mut joined, half, x, 0);
+        x += i64::from(half.width());
+    }
+    joined.save(output)
 }
 
 fn starts(trial: &str, bodies: &[String], offset: &StartOffset) -> Result<bool, SceneError> {

@@ -10,7 +10,7 @@ use biplane_acquisition::calibration::{read_calibration, read_distortion_csv};
 use biplane_artifact::{Calibration, Curves, PixelOrigin, PoseRecord};
 use biplane_fluoroscope::{Distortion, Fluoroscope};
 use biplane_geometry::{Curve, EdgePoint, Mesh, Point2, Point3, Pose, Rigid, Twist, Vector2, Vector3};
-use biplane_optimisation::{EdgeField, RefineParams, Refined, View, refine};
+use biplane_optimisation::{Contrast, EdgeField, MatchParams, Refined, View, refine};
 use biplane_outline::{Outline, RimMesh, Sampling};
 use biplane_segmentation::{SegmentParams, find_edges};
 use nalgebra::{Matrix4, UnitQuaternion};
@@ -223,14 +223,14 @@ fn edges_are_carried_into_ideal_pixels_with_their_direction() {
 
 // Matching
 
-/// A spindle along x, 60 mm long and 30 and 24 mm thick, its centre at `centre` of its model's frame.
+/// A spindle along x, 60 mm long and 30 and 16 mm thick, its centre at `centre` of its model's frame.
 fn spindle(centre: Vector3) -> Mesh {
     let n = 48;
     let point = |i: usize, j: usize| {
         let polar = std::f64::consts::PI * i as f64 / n as f64;
         let around = std::f64::consts::TAU * (j % n) as f64 / n as f64;
         let across = if i == 0 || i == n { 0.0 } else { polar.sin() };
-        Point3::new(30.0 * polar.cos(), 15.0 * across * around.cos(), 12.0 * across * around.sin()) + centre
+        Point3::new(30.0 * polar.cos(), 15.0 * across * around.cos(), 8.0 * across * around.sin()) + centre
     };
     let quads = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
     let soup: Vec<[Point3; 3]> = quads
@@ -242,13 +242,13 @@ fn spindle(centre: Vector3) -> Mesh {
     Mesh::from_soup(&soup).unwrap()
 }
 
-/// Looks along the laboratory's z axis, 2 px per mm at the origin.
+/// Looks along the laboratory's z axis, 8 px per mm at the origin.
 fn along_z() -> Fluoroscope {
     Fluoroscope::from(&Calibration {
         view: "A".to_owned(),
-        size: [400, 400],
+        size: [1024, 1024],
         source: [0.0, 0.0, -1000.0],
-        matrix: [[2000.0, 0.0, 199.5], [0.0, 2000.0, 199.5], [0.0, 0.0, 1.0]],
+        matrix: [[8000.0, 0.0, 511.5], [0.0, 8000.0, 511.5], [0.0, 0.0, 1.0]],
         distortion: None,
     })
 }
@@ -257,9 +257,9 @@ fn along_z() -> Fluoroscope {
 fn along_y() -> Fluoroscope {
     Fluoroscope::from(&Calibration {
         view: "B".to_owned(),
-        size: [400, 400],
+        size: [1024, 1024],
         source: [0.0, -1000.0, 0.0],
-        matrix: [[2000.0, 199.5, 0.0], [0.0, 199.5, -2000.0], [0.0, 1.0, 0.0]],
+        matrix: [[8000.0, 511.5, 0.0], [0.0, 511.5, -8000.0], [0.0, 1.0, 0.0]],
         distortion: None,
     })
 }
@@ -270,7 +270,7 @@ fn matched(
     truth: &Pose,
     fluoroscopes: &[Fluoroscope],
     inside: impl Fn(usize) -> f64,
-    contrast: f64,
+    contrast: Contrast,
 ) -> Refined {
     let (rim, mut outline) = (RimMesh::new(mesh), Outline::new());
     let mut views = Vec::new();
@@ -287,8 +287,8 @@ fn matched(
         let curves = Curves(vec![Curve { points: points.collect(), closed: false }]);
         views.push(View { edges: EdgeField::new(&curves, None), fluoroscope: fluoroscope.clone() });
     }
-    let params = RefineParams { search_px: 10.0, final_search_px: 3.0, contrast, inset_px: 1.0 };
-    refine(&rim, &views, truth, &params)
+    let params = MatchParams { search_px: 10.0, contrast, ..MatchParams::default() };
+    refine(&rim, &views, truth, &params.search())
 }
 
 #[test]
@@ -296,7 +296,7 @@ fn a_positive_inset_means_edges_inside_the_outline() {
     let truth = Pose::new(UnitQuaternion::from_euler_angles(0.1, -0.2, 0.3), Vector3::new(4.0, -3.0, 0.0));
     for inside in [0.4, -0.3] {
         let mesh = spindle(Vector3::zeros());
-        let refined = matched(&mesh, &truth, &[along_z(), along_y()], |_| inside, 1.0);
+        let refined = matched(&mesh, &truth, &[along_z(), along_y()], |_| inside, Contrast::Dark);
         for evidence in &refined.evidence {
             assert!((evidence.inset_px - inside).abs() < 0.05, "{} px for {inside} px", evidence.inset_px);
         }
@@ -306,9 +306,9 @@ fn a_positive_inset_means_edges_inside_the_outline() {
 #[test]
 fn a_dark_body_finds_edges_that_brighten_outward_alone() {
     let (mesh, truth) = (spindle(Vector3::zeros()), Pose::identity());
-    let evidence = matched(&mesh, &truth, &[along_z()], |_| 0.0, 1.0).evidence[0];
+    let evidence = matched(&mesh, &truth, &[along_z()], |_| 0.0, Contrast::Dark).evidence[0];
     assert!(evidence.matched_px > 0.95 * evidence.in_image_px, "{evidence:?}");
-    let other = matched(&mesh, &truth, &[along_z()], |_| 0.0, -1.0).evidence[0];
+    let other = matched(&mesh, &truth, &[along_z()], |_| 0.0, Contrast::Bright).evidence[0];
     assert!(other.in_image_px > 0.0 && other.matched_px == 0.0, "{other:?}");
 }
 
@@ -316,7 +316,7 @@ fn a_dark_body_finds_edges_that_brighten_outward_alone() {
 fn covariance_is_translation_then_rotation_along_laboratory_axes_at_the_centroid() {
     // Edges are off by a wave along the outline, the same one each time: how it spreads over the six is the shape's doing.
     let sigma = |mesh: &Mesh, truth: &Pose| {
-        let refined = matched(mesh, truth, &[along_z()], |k| 0.2 * (1.3 * k as f64).sin(), 1.0);
+        let refined = matched(mesh, truth, &[along_z()], |k| 0.2 * (1.3 * k as f64).sin(), Contrast::Dark);
         let c = refined.covariance.unwrap();
         std::array::from_fn::<f64, 6, _>(|i| c[(i, i)].sqrt())
     };
