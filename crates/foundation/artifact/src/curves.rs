@@ -87,7 +87,9 @@ impl Artifact for Curves {
                 return Err(DecodeError::of::<Self>(format!("curve {number} is out of order")));
             }
             if (2..8).any(|i| !float(i).is_finite()) {
-                return Err(DecodeError::of::<Self>(format!("curve {number} has a number that is not finite")));
+                return Err(DecodeError::of::<Self>(format!(
+                    "curve {number} has a number that is not finite"
+                )));
             }
             if let Some(curve) = curves.last_mut() {
                 curve.points.push(EdgePoint {

@@ -14,7 +14,9 @@ impl Content for ModelMesh {
     fn content_hash(&self) -> ContentHash {
         let Self(mesh) = self;
         let mut bytes = Vec::with_capacity(mesh.vertices().len() * 24 + mesh.triangles().len() * 12);
-        bytes.extend(mesh.vertices().iter().flat_map(|v| [v.x, v.y, v.z]).flat_map(|c| c.to_bits().to_le_bytes()));
+        bytes.extend(
+            mesh.vertices().iter().flat_map(|v| [v.x, v.y, v.z]).flat_map(|c| c.to_bits().to_le_bytes()),
+        );
         bytes.extend(mesh.triangles().iter().flatten().flat_map(|v| v.to_le_bytes()));
         ContentHasher::new(Self::KIND, Self::SCHEMA)
             .unsigned(mesh.vertices().len() as u64)

@@ -190,7 +190,8 @@ impl Mesh {
 
     /// Counts what keeps the mesh from being a closed, oriented, two-manifold surface.
     pub fn topology(&self) -> Topology {
-        let mut edges: HashMap<(u32, u32), (u32, i32, u32)> = HashMap::with_capacity(self.triangles.len() * 2);
+        let mut edges: HashMap<(u32, u32), (u32, i32, u32)> =
+            HashMap::with_capacity(self.triangles.len() * 2);
         let mut parent: Vec<u32> = (0..self.triangles.len() as u32).collect();
         fn root(parent: &mut [u32], mut i: u32) -> u32 {
             while parent[i as usize] != i {

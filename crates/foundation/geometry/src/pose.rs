@@ -47,7 +47,11 @@ impl<To, From> PartialEq for Rigid<To, From> {
 impl<To, From> std::fmt::Debug for Rigid<To, From> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (q, t) = (self.rotation.as_ref().coords, self.translation);
-        write!(f, "Rigid {{ t: [{}, {}, {}] mm, q(wxyz): [{}, {}, {}, {}] }}", t.x, t.y, t.z, q.w, q.x, q.y, q.z)
+        write!(
+            f,
+            "Rigid {{ t: [{}, {}, {}] mm, q(wxyz): [{}, {}, {}, {}] }}",
+            t.x, t.y, t.z, q.w, q.x, q.y, q.z
+        )
     }
 }
 
@@ -189,10 +193,11 @@ impl Pose {
 
     /// Between two poses: the fraction `s` of the way, straight for the point `centroid` (model, mm), turning evenly.
     pub fn between(&self, other: &Pose, s: f64, centroid: &Point3) -> Pose {
-        let rotation = self
-            .rotation
-            .try_slerp(&other.rotation, s, 1e-9)
-            .unwrap_or(if s < 0.5 { self.rotation } else { other.rotation });
+        let rotation = self.rotation.try_slerp(&other.rotation, s, 1e-9).unwrap_or(if s < 0.5 {
+            self.rotation
+        } else {
+            other.rotation
+        });
         let at = self.transform(centroid).coords.lerp(&other.transform(centroid).coords, s);
         Pose::new(rotation, at - rotation * centroid.coords)
     }
@@ -205,7 +210,8 @@ mod tests {
 
     #[test]
     fn frames_compose_and_invert() {
-        let a: Pose = Rigid::new(UnitQuaternion::from_euler_angles(0.3, -0.2, 1.1), Vector3::new(1.0, 2.0, 3.0));
+        let a: Pose =
+            Rigid::new(UnitQuaternion::from_euler_angles(0.3, -0.2, 1.1), Vector3::new(1.0, 2.0, 3.0));
         let p = Point3::new(4.0, -5.0, 6.0);
         assert_relative_eq!(a.inverse().transform(&a.transform(&p)), p, epsilon = 1e-12);
         let unit: Rigid<Model, Model> = a.inverse() * a;
@@ -243,7 +249,8 @@ mod tests {
         let centroid = Point3::new(0.0, 0.0, 100.0);
         let reference = Pose::identity();
         // A turn of 0.3 degrees about the centroid moves the origin by half a millimetre, and is no translation error.
-        let turn = Twist { translation: Vector3::zeros(), rotation: Vector3::new(0.3_f64.to_radians(), 0.0, 0.0) };
+        let turn =
+            Twist { translation: Vector3::zeros(), rotation: Vector3::new(0.3_f64.to_radians(), 0.0, 0.0) };
         let error = reference.moved(&turn, &centroid).error_against(&reference, &centroid);
         assert!(error.translation_mm < 1e-12);
         assert_relative_eq!(error.rotation_rad, 0.3_f64.to_radians(), epsilon = 1e-12);
