@@ -306,6 +306,12 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
             text += &format!("  {}: {}\n", failure.item, failure.message);
         }
     }
+    let rows = good + doubtful + failed;
+    if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
+        text += "\nHardly a match is good. Check first: are the folders (or calibrations) of two views exchanged? Do the\n\
+                 paired frames belong together (`offset`)? Are the start poses in the world of the calibration, of these\n\
+                 meshes, in mm? Is a distortion table missing? The overlays show it.\n";
+    }
     let at = |name: &str| {
         let path = study.output.join(name);
         let shown =

@@ -134,7 +134,7 @@ pub fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> + Clo
 }
 
 /// A problem from what the TOML reader says, with the nearest known word for a misspelt one.
-pub fn from_toml(error: &toml::de::Error) -> Problem {
+pub fn from_toml(error: &toml::de::Error, text: &str) -> Problem {
     let message = error.message().trim().to_owned();
     let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let mut problem =
@@ -157,11 +157,34 @@ pub fn from_toml(error: &toml::de::Error) -> Problem {
             Some(text) => format!("add `{key} = ...`: {text}"),
             None => format!("add `{key} = ...` below this line"),
         });
+    } else if message == "duplicate key" {
+        let key = error.span().and_then(|s| text.get(s)).unwrap_or_default();
+        problem.title = format!("`{key}` is there twice");
+        problem.label = "second time".to_owned();
+        problem = problem.help(several(key).unwrap_or("keep one of them".to_owned()));
+    } else if let (true, Some(key)) =
+        (message.ends_with("expected a sequence"), header_of(text, error.span()).and_then(several))
+    {
+        problem.title = "a study can have several of these".to_owned();
+        problem.label = "in single brackets".to_owned();
+        problem = problem.help(key);
     } else if message.starts_with("invalid type") || message.starts_with("invalid value") {
         problem.title = message.replace("f64", "a number").replace("u64", "a whole number from 0 up");
         problem.label = "here".to_owned();
     }
     problem
+}
+
+/// What to write for a table that a study may have several of.
+fn several(key: &str) -> Option<String> {
+    ["body", "trial"]
+        .contains(&key)
+        .then(|| format!("write `[[{key}]]` in double brackets, once for each one"))
+}
+
+/// `name` of a header `[name]` at a place of the text.
+fn header_of(text: &str, span: Option<Range<usize>>) -> Option<&str> {
+    text.get(span?.start..)?.strip_prefix('[')?.split(']').next().map(str::trim)
 }
 
 fn listed(words: &[&str]) -> String {

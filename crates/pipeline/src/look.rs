@@ -49,6 +49,9 @@ pub struct Look {
 /// Inputs that everything hangs on are wrong, or the store cannot be used.
 pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     let prepared = Prepared::of(study)?;
+    for warning in &prepared.warnings {
+        tracing::warn!("{warning}");
+    }
     let store = Store::open(&prepared.study.hidden())?;
     let context = Context::new();
     let steps = Steps { prepared: &prepared, store: &store, context: &context };

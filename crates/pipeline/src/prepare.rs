@@ -19,7 +19,7 @@ use biplane_stage::{Hashed, ParamsText};
 use crate::config;
 use crate::outcome::StartKind;
 use crate::sources::{InputIndex, MeshFacts};
-use crate::starts::{starts_of, unused_edits};
+use crate::starts::{starts_of, unused_edits, unused_starts};
 use crate::study::{Body, Study, Trial, View};
 use crate::tables::PoseTable;
 
@@ -142,7 +142,8 @@ impl Prepared {
                 .extend(mesh.facts.notes.iter().map(|note| format!("body {} ({file}): {note}", body.name)));
         }
         let edits = study.edits();
-        let edits = if edits.is_file() { faults.keep(PoseTable::read(&edits)) } else { None };
+        let has_edits = edits.is_file();
+        let edits = if has_edits { faults.keep(PoseTable::read(&edits)) } else { None };
         let mut tables: BTreeMap<&Path, PoseTable> = BTreeMap::new();
         for path in study.trials.iter().filter_map(|t| t.starts.as_deref()) {
             if !tables.contains_key(path) {
@@ -165,11 +166,15 @@ impl Prepared {
             if let Some(edits) = &edits {
                 warnings.extend(unused_edits(edits, &trial.name, &labels, study.trials.len() == 1));
             }
-            // A fault before this one leaves indices that do not fit; it is reported, and this trial is not looked at.
-            if meshes.len() != study.bodies.len() {
+            let table = trial.starts.as_deref().and_then(|path| tables.get(path));
+            warnings
+                .extend(table.and_then(|t| unused_starts(t, &trial.name, &labels, study.trials.len() == 1)));
+            // A fault before this one leaves indices that do not fit, or starts that seem to be missing; it is reported,
+            // and this trial is not looked at.
+            let unread = (trial.starts.is_some() && table.is_none()) || (has_edits && edits.is_none());
+            if unread || meshes.len() != study.bodies.len() {
                 continue;
             }
-            let table = trial.starts.as_deref().and_then(|path| tables.get(path));
             let mut starts = Vec::new();
             for &body in &trial.bodies {
                 let centroid = Point3::from(meshes[body].facts.centroid);
@@ -180,7 +185,8 @@ impl Prepared {
                 if between > 0 {
                     let all = found.len();
                     warnings.push(format!(
-                        "trial {}, body {name}: {between} of {all} frames start between the poses given for others",
+                        "trial {}, body {name}: {between} of {all} frames have no start of their own; they start between the \
+                         poses given for others",
                         trial.name
                     ));
                 }
@@ -197,7 +203,7 @@ impl Prepared {
         let segment = faults.keep(ParamsText::of(&study.segment));
         let matching = faults.keep(ParamsText::of(&study.matching));
         let overlay = faults.keep(ParamsText::of(&()));
-        let warnings = warnings.iter().map(|w| study.shorten(w)).collect();
+        let warnings: Vec<String> = warnings.iter().map(|w| study.shorten(w)).collect();
         match (segment, matching, overlay, faults.list) {
             (Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => Ok(Self {
                 study,
@@ -211,7 +217,16 @@ impl Prepared {
                 overlay,
                 pictures,
             }),
-            (.., list) => Err(InputErrors(list)),
+            (.., mut list) => {
+                // What is odd may be the reason of what is wrong: a misspelt name, say.
+                for warning in &warnings {
+                    tracing::warn!("{warning}");
+                }
+                // One file may be read for several views.
+                let mut seen = BTreeSet::new();
+                list.retain(|message| seen.insert(message.clone()));
+                Err(InputErrors(list))
+            }
         }
     }
 

@@ -48,8 +48,8 @@ pub enum RunError {
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// A person stopped it.
     #[error(
-        "stopped: {done} of {frames} frames are finished and kept, poses.csv and the report are those of the last whole \
-         run. The same command goes on from here"
+        "stopped: {done} of {frames} frames are finished and kept. poses.csv and the report are written at the end of a whole \
+         run; until then they are those of the one before, if any. The same command goes on from here"
     )]
     Stopped {
         /// Frames that were finished.

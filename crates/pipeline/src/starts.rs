@@ -10,6 +10,9 @@ use crate::diagnostics::slashes;
 use crate::outcome::StartKind;
 use crate::tables::{EXAMPLE_HEADER, PoseTable, same_frame};
 
+/// Frames named in a message.
+const NAMED: usize = 5;
+
 /// No start for a body in a trial.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -107,6 +110,24 @@ pub fn unused_edits(edits: &PoseTable, trial: &str, labels: &[&str], only_trial:
         .collect()
 }
 
+/// Rows of a table of starts for frames that a trial does not have, in one line; they may be meant for another study.
+pub fn unused_starts(table: &PoseTable, trial: &str, labels: &[&str], only_trial: bool) -> Option<String> {
+    let rows = table.rows.iter().filter(|r| r.trial.as_deref().map_or(only_trial, |t| t == trial));
+    let mut frames: Vec<&str> = rows.map(|r| r.frame.as_str()).collect();
+    frames.retain(|f| !labels.iter().any(|l| same_frame(l, f)));
+    let rows = frames.len();
+    frames.dedup();
+    let more = if frames.len() > NAMED { ", ..." } else { "" };
+    frames.truncate(NAMED);
+    (rows > 0).then(|| {
+        format!(
+            "{}: {rows} row(s) are for frames that trial {trial} does not have, and are not used: {}{more}",
+            slashes(&table.path),
+            frames.join(", ")
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,6 +176,17 @@ mod tests {
         assert!(error.contains("trial,frame,body,tx_mm") && error.ends_with("in starts.csv"), "{error}");
         let error = starts_of("t", "f", &["1"], None, None, Point3::origin()).unwrap_err().to_string();
         assert!(error.contains("edits/poses.csv, or in a table"), "{error}");
+    }
+
+    /// Fault: rows of starts for frames that are not there were passed over without a word.
+    #[test]
+    fn starts_for_frames_that_are_not_there_are_told_in_one_line() {
+        let table = table("t,1,f,1,0,0,1,0,0,0\nt,8,f,1,0,0,1,0,0,0\nt,9,f,1,0,0,1,0,0,0\n");
+        let note = unused_starts(&table, "t", &["0001"], false);
+        let expected =
+            "starts.csv: 2 row(s) are for frames that trial t does not have, and are not used: 8, 9";
+        assert_eq!(note.as_deref(), Some(expected));
+        assert_eq!(unused_starts(&table, "u", &["0001"], false), None);
     }
 
     #[test]

@@ -131,7 +131,7 @@ impl Study {
         };
         let root = std::path::absolute(folder).map_err(unreadable)?;
         let wrong = |list| StudyError::Wrong(Problems { path: path.to_owned(), text: text.clone(), list });
-        let file: PipelineFile = toml::from_str(&text).map_err(|e| wrong(vec![from_toml(&e)]))?;
+        let file: PipelineFile = toml::from_str(&text).map_err(|e| wrong(vec![from_toml(&e, &text)]))?;
         let mut check = Check { root, list: Vec::new() };
         if let Err(error) = file.segment.check() {
             let key = match &error {

@@ -144,3 +144,39 @@ fn a_missing_pipeline_file_says_what_to_do() {
     assert_eq!(code, 2);
     assert!(said.starts_with("pipeline.toml: ") && said.contains("biplane init"), "{said}");
 }
+
+/// Fault: `[body]` for `[[body]]` was called a duplicate key, or a map where a sequence is expected.
+#[test]
+fn single_brackets_are_told_to_be_double() {
+    refuses("[[body]]", "[body]", &["pipeline.toml:10:1", "write `[[body]]` in double brackets"]);
+    let twice = "[trial]\nname = \"a\"\nframes = { A = \"frames/A\" }\n[trial]";
+    refuses("[[trial]]", twice, &["pipeline.toml:17:2", "`trial` is there twice", "`[[trial]]`"]);
+}
+
+/// Fault: a table of starts that cannot be read was followed by "the trial names no table" for each body.
+#[test]
+fn one_fault_is_told_once() {
+    let scene = Scene::new();
+    scene.write("starts.csv", HEADER.replace(",qz", ",q").as_bytes());
+    let (code, _, said) = scene.biplane(&["run"]);
+    assert_eq!((code, said.lines().count()), (3, 1), "{said}");
+    scene.write("edits/poses.csv", b"frame\n");
+    assert_eq!(scene.biplane(&["run"]).2.lines().count(), 2);
+}
+
+/// Fault: with no row of the right name, what the name may be was not said; and `plan` showed no warnings.
+#[test]
+fn a_misspelt_name_in_starts_is_told_with_what_is_meant() {
+    let scene = Scene::new();
+    scene.write("starts.csv", scene.read("starts.csv").replace("squat", "sqaut").as_bytes());
+    let (code, _, said) = scene.biplane(&["run"]);
+    assert_eq!(code, 3);
+    assert!(said.contains("the study has no trial `sqaut`: did you mean `squat`?"), "{said}");
+    scene.write("starts.csv", format!("{HEADER}{}{}", row(0, 1.0), row(7, 1.0)).as_bytes());
+    let (code, _, said) = scene.biplane(&["plan"]);
+    assert_eq!(code, 0);
+    assert!(
+        said.contains("1 row(s) are for frames that trial squat does not have, and are not used: 7"),
+        "{said}"
+    );
+}

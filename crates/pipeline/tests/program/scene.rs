@@ -1,4 +1,4 @@
-//! A tiny study made on the spot: a dark box before two fluoroscopes at right angles, three frames of 256 x 256.
+//! A tiny study made on the spot: a dark box before two fluoroscopes at right angles, three frames of 512 x 512.
 //!
 //! The pictures are drawn from the box's projected corners alone (the shadow of a convex body is the hull of its
 //! corners), with an edge as a logistic step of about a pixel; nothing of the program has a part in them.
@@ -10,9 +10,9 @@ use std::time::{Duration, SystemTime};
 use nalgebra::{Matrix3, Point2, Point3, UnitQuaternion, Vector3};
 
 /// Columns and rows.
-pub const SIZE: u32 = 256;
+pub const SIZE: u32 = 512;
 /// px.
-const FOCAL: f64 = 2000.0;
+const FOCAL: f64 = 4000.0;
 /// Of the source from the laboratory's origin, mm.
 const DISTANCE: f64 = 1000.0;
 /// Of the box, mm.

@@ -21,19 +21,19 @@ fn images_become_poses_and_a_second_run_does_nothing() {
     for frame in 0..3 {
         let (_, t) = truth(frame);
         for (name, expected) in [("tx_mm", t.x), ("ty_mm", t.y), ("tz_mm", t.z)] {
-            // Drawn with edges of a pixel (0.5 mm) in 8 bits: a tenth of a pixel is what can be asked.
+            // Drawn with edges of a pixel (0.25 mm) in 8 bits: a tenth of a pixel is what can be asked.
             let found = number(&scene, name, frame);
             assert!((found - expected).abs() < 0.05, "frame {frame} {name}: {found}, expected {expected}");
         }
     }
     assert_eq!(column(&scene, "start"), ["file", "interpolated", "file"]);
     assert_eq!(column(&scene, "time_s"), ["0.000000", "0.100000", "0.200000"]);
-    assert!(err.contains("1 of 3 frames start between the poses given for others"), "{err}");
+    assert!(err.contains("1 of 3 frames have no start of their own"), "{err}");
     assert!(out.contains("Overlays results/overlays"), "{out}");
     let overlay = image::open(scene.path("results/overlays/squat/0002_B.png")).unwrap().to_rgb8();
     assert_eq!(overlay.dimensions(), (SIZE, SIZE));
     assert!(overlay.pixels().filter(|p| p[0].abs_diff(p[2]) > 60).count() > 200, "a coloured outline");
-    assert!(scene.read("results/report.html").contains("1 of 3 frames start between"));
+    assert!(scene.read("results/report.html").contains("1 of 3 frames have no start of their own"));
     let before: Vec<_> = ["poses.csv", "report.html"].map(|f| scene.read(&format!("results/{f}"))).into();
     let written = std::fs::metadata(scene.path("results/poses.csv")).unwrap().modified().unwrap();
 
@@ -235,4 +235,14 @@ fn overlays_of_frames_that_are_gone_go_and_a_persons_files_stay() {
     let left: Vec<_> = std::fs::read_dir(scene.path("results/overlays/squat")).unwrap().collect();
     assert_eq!(left.len(), 1, "only the notes: {left:?}");
     assert_eq!(scene.read("results/notes.txt"), "mine");
+}
+
+/// Fault to guard against: views exchanged must never come out good.
+#[test]
+fn exchanged_views_never_come_out_good_and_the_end_says_what_to_check() {
+    let scene = Scene::new();
+    scene.edit("{ A = \"frames/A\", B = \"frames/B\" }", "{ A = \"frames/B\", B = \"frames/A\" }");
+    let (_, out, _) = scene.biplane(&["run"]);
+    assert!(!column(&scene, "verdict").contains(&"good".to_owned()), "{out}");
+    assert!(out.contains("of two views exchanged?"), "{out}");
 }
