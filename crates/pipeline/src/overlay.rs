@@ -8,6 +8,7 @@ use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Point2;
 use biplane_outline::{Outline, RimMesh, Sampling};
 use biplane_stage::{Context, Stage, inputs};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
 inputs! {

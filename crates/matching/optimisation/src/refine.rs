@@ -96,9 +96,9 @@ impl Refined {
 
 /// Length along a contour over which residuals move together, px: they are differences between mesh and body, and edges
 /// beside bone or cement that are off as a whole, not noise of single pixels. Two residuals nearer than this say the same
-/// thing twice. 100 px gives a mean squared error over the stated covariance of 7.3 (femoral component) and 3.8 (tray) on
+/// thing twice. 150 px gives a mean squared error over the stated covariance of 6.8 (femoral component) and 3.8 (tray) on
 /// the simulated knee, where 6 would be right and 20 px gave 47 and 27 (`cargo xtask validate knee`).
-const CORRELATION_PX: f64 = 100.0;
+const CORRELATION_PX: f64 = 150.0;
 
 /// One outline sample that found an edge.
 struct Row {
@@ -355,12 +355,12 @@ fn finish(
 /// Covariance of the pose from the residuals: a sandwich in which residuals within one correlation length are one
 /// observation. The inset's own uncertainty is in the normal matrix already.
 fn covariance(normal: &Normal, buffers: &Buffers) -> Option<Matrix6<f64>> {
-    let independent: f64 = buffers.rows.iter().map(|r| r.length).sum::<f64>() / CORRELATION_PX;
-    let fitted = 6.0 + buffers.views.len() as f64;
-    if normal.weight <= 0.0 || independent <= fitted + 1.0 {
+    // Six of the pose and one inset a view were fitted to the samples.
+    let (samples, fitted) = (buffers.rows.len() as f64, 6.0 + buffers.views.len() as f64);
+    if normal.weight <= 0.0 || samples <= fitted {
         return None;
     }
-    let variance = normal.squared / normal.weight * independent / (independent - fitted);
+    let variance = normal.squared / normal.weight * samples / (samples - fitted);
     let mut spread = Matrix6::zeros();
     for (rows, inset) in buffers.by_view() {
         let (mut sum, mut mean) = (0.0, Vector6::zeros());
