@@ -97,7 +97,7 @@ impl Refined {
 /// Length along a contour over which residuals move together, px: they are differences between mesh and body, and edges
 /// beside bone or cement that are off as a whole, not noise of single pixels. Two residuals nearer than this say the same
 /// thing twice. 150 px gives a mean squared error over the stated covariance of 6.8 (femoral component) and 3.8 (tray) on
-/// the simulated knee, where 6 would be right and 20 px gave 47 and 27 (`cargo xtask validate knee`).
+/// the simulated knee, where 6 would be right (`cargo xtask validate knee`).
 const CORRELATION_PX: f64 = 150.0;
 
 /// One outline sample that found an edge.

@@ -3,6 +3,9 @@
 //! Outlines here come from the very mesh that is matched, so these tests say nothing of accuracy on images (that is
 //! `cargo xtask validate`): they hold the optimiser, the robust weights, the inset and the verdict.
 
+// A test whose set-up fails has failed.
+#![allow(clippy::unwrap_used)]
+
 use biplane_artifact::{Calibration, Curves, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Curve, EdgePoint, Mesh, Point3, Pose, Twist, Vector2, Vector3};
