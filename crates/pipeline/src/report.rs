@@ -2,10 +2,10 @@
 //!
 //! The same results give the same bytes: no clock and no absolute path is in it.
 
-use biplane_artifact::Verdict;
+use biplane_artifact::{Match, Verdict, ViewFit};
 use serde::Serialize;
 
-use crate::outcome::Outcome;
+use crate::outcome::{BodyOutcome, FrameOutcome, Outcome};
 use crate::overlay::COLOURS;
 use crate::results::UNKNOWN;
 use crate::study::Study;
@@ -32,7 +32,8 @@ struct Row {
     body: String,
     verdict: &'static str,
     reason: String,
-    fit: Option<[String; 2]>,
+    fit_mm: String,
+    fit_px: String,
     share: String,
     sigma: Option<[String; 2]>,
     start: &'static str,
@@ -44,12 +45,37 @@ struct Card {
     frame: String,
     worst: &'static str,
     bodies: Vec<(String, &'static str, String, String)>,
-    pictures: Vec<(String, String)>,
+    pictures: Vec<Shown>,
+}
+
+/// One overlay, and what each body's fit in it is.
+#[derive(Serialize)]
+struct Shown {
+    view: String,
+    src: String,
+    fits: Vec<String>,
+}
+
+/// One body over all frames of a trial.
+#[derive(Serialize)]
+struct Line {
+    body: String,
+    colour: String,
+    counts: [usize; 3],
+    /// Place of the frame's card, its label, the verdict.
+    frames: Vec<(usize, String, &'static str)>,
+    fit_mm: String,
+    sigma_mm: String,
+    sigma_deg: String,
 }
 
 #[derive(Serialize)]
 struct TrialPart {
     name: String,
+    views: Vec<String>,
+    timed: bool,
+    explained: bool,
+    lines: Vec<Line>,
     rows: Vec<Row>,
     cards: Vec<Card>,
 }
@@ -96,6 +122,9 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
 fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
     let mut rows = Vec::new();
     let mut cards = Vec::new();
+    let recording = &study.trials[trial];
+    let views: Vec<String> = recording.frames.iter().map(|(v, _)| study.views[*v].name.clone()).collect();
+    let lines = (0..recording.bodies.len()).map(|place| line(study, outcome, trial, place)).collect();
     for (anchor, frame) in outcome.frames.iter().enumerate().filter(|(_, f)| f.trial == trial) {
         let mut worst = Verdict::Good;
         let mut bodies = Vec::new();
@@ -103,8 +132,7 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
             let name = study.bodies[body.body].name.clone();
             let verdict = body.verdict();
             worst = worst.max(verdict);
-            let [r, g, b] = COLOURS[bodies.len() % COLOURS.len()];
-            bodies.push((name.clone(), verdict.word(), body.reason(), format!("#{r:02x}{g:02x}{b:02x}")));
+            bodies.push((name.clone(), verdict.word(), body.reason(), colour(bodies.len())));
             let found = body.result.as_ref().ok();
             rows.push(Row {
                 anchor,
@@ -113,11 +141,9 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
                 body: name,
                 verdict: verdict.word(),
                 reason: body.reason(),
-                fit: body.fit().map(|[mm, px]| [format!("{mm:.3}"), format!("{px:.2}")]),
-                share: found.map_or(String::new(), |m| {
-                    let shares = m.views.iter().map(|v| format!("{:.0}", 100.0 * v.matched_share));
-                    shares.collect::<Vec<_>>().join(" / ")
-                }),
+                fit_mm: body.fit().map_or(String::new(), |[mm, _]| format!("{mm:.3}")),
+                fit_px: a_view(found, |v| format!("{:.2}", v.rms_px)),
+                share: a_view(found, |v| format!("{:.0}", 100.0 * v.matched_share)),
                 sigma: found
                     .map(|m| [m.translation_sigma_mm(), m.rotation_sigma_rad().to_degrees()])
                     .filter(|sigma| sigma.iter().all(|s| *s < UNKNOWN))
@@ -125,14 +151,69 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
                 start: body.start.word(),
             });
         }
-        let pictures = frame
-            .overlays
-            .iter()
-            .map(|(view, path)| (study.views[*view].name.clone(), url(&crate::diagnostics::slashes(path))))
-            .collect();
+        let pictures = frame.overlays.iter().map(|(view, path)| Shown {
+            view: study.views[*view].name.clone(),
+            src: url(&crate::diagnostics::slashes(path)),
+            fits: fits(study, frame, recording.frames.iter().position(|(v, _)| v == view)),
+        });
+        let pictures = pictures.collect();
         cards.push(Card { anchor, frame: frame.label.clone(), worst: worst.word(), bodies, pictures });
     }
-    TrialPart { name: study.trials[trial].name.clone(), rows, cards }
+    TrialPart {
+        name: recording.name.clone(),
+        views,
+        timed: rows.iter().any(|r: &Row| !r.time.is_empty()),
+        explained: rows.iter().any(|r| !r.reason.is_empty()),
+        lines,
+        rows,
+        cards,
+    }
+}
+
+/// The colour of a trial's body in the overlays.
+fn colour(place: usize) -> String {
+    let [r, g, b] = COLOURS[place % COLOURS.len()];
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// A number of each view, in their order.
+fn a_view(found: Option<&Match>, number: impl Fn(&ViewFit) -> String) -> String {
+    found.map_or(String::new(), |m| m.views.iter().map(number).collect::<Vec<_>>().join(" / "))
+}
+
+/// What is said under an overlay: each body's fit in this view.
+fn fits(study: &Study, frame: &FrameOutcome, slot: Option<usize>) -> Vec<String> {
+    let of = |body: &BodyOutcome| {
+        let fit = body.result.as_ref().ok()?.views.get(slot?)?;
+        let name = &study.bodies[body.body].name;
+        Some(format!("{name}: {:.2} px, {:.0} % found", fit.rms_px, 100.0 * fit.matched_share))
+    };
+    frame.bodies.iter().filter_map(of).collect()
+}
+
+/// One body over a trial: its verdicts, and the medians of what is stated of its poses.
+fn line(study: &Study, outcome: &Outcome, trial: usize, place: usize) -> Line {
+    let frames = outcome.frames.iter().enumerate().filter(|(_, f)| f.trial == trial);
+    let own: Vec<_> = frames.filter_map(|(i, f)| Some((i, f, f.bodies.get(place)?))).collect();
+    let median = |values: &dyn Fn(&BodyOutcome) -> Option<f64>| {
+        let mut values: Vec<f64> =
+            own.iter().filter_map(|(.., b)| values(b)).filter(|v| *v < UNKNOWN).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).map_or("-".to_owned(), |v| format!("{v:.3}"))
+    };
+    let mut counts = [0; 3];
+    for (.., body) in &own {
+        counts[body.verdict() as usize] += 1;
+    }
+    Line {
+        body: study.bodies[study.trials[trial].bodies[place]].name.clone(),
+        colour: colour(place),
+        counts,
+        fit_mm: median(&|b| b.fit().map(|f| f[0])),
+        sigma_mm: median(&|b| b.result.as_ref().ok().map(Match::translation_sigma_mm)),
+        sigma_deg: median(&|b| b.result.as_ref().ok().map(|m| m.rotation_sigma_rad().to_degrees())),
+        frames: own.into_iter().map(|(i, f, b)| (i, f.label.clone(), b.verdict().word())).collect(),
+    }
 }
 
 /// A relative path as the address of a link.
@@ -151,7 +232,7 @@ fn url(path: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::{BodyOutcome, FrameOutcome, StartKind};
+    use crate::outcome::StartKind;
     use crate::study::{Body, Trial, View};
 
     fn study() -> Study {
@@ -202,6 +283,9 @@ mod tests {
         assert!(page.contains("not matched: a &lt; b"));
         assert_eq!(page.matches("loading=\"lazy\" src=\"overlays").count(), 2000);
         assert_eq!(page.matches("<tr class=\"failed-row\">").count(), 2000);
+        // Faults: nothing said which colour is which body, and verdicts had to be looked for row by row.
+        assert_eq!(page.matches("<a class=\"failed\" href=\"#f").count(), 2000, "one mark a frame and body");
+        assert!(page.contains("background:#56c8ff") && page.contains("broken line"), "a legend");
         assert!(!page.contains("/study") && !page.contains("http"), "no absolute path, no network");
         assert!(page.len() < 4_000_000, "{} bytes", page.len());
     }

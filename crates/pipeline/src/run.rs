@@ -77,6 +77,7 @@ struct Frame {
 pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Outcome), RunError> {
     let prepared = Prepared::of(study)?;
     let store = Store::open(&prepared.study.hidden())?;
+    writable(&prepared.study.output)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     for warning in &prepared.warnings {
         tracing::warn!("{warning}");
@@ -123,6 +124,22 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     }
     write(&study, &outcome, &provenance)?;
     Ok((study, outcome))
+}
+
+/// That results can be written is known before an hour of work, not after it.
+fn writable(folder: &Path) -> Result<(), RunError> {
+    let made = folder.exists();
+    let tried = std::fs::create_dir_all(folder)
+        .and_then(|()| tempfile::Builder::new().prefix(".writing-").tempfile_in(folder).map(drop));
+    tried.map_err(|source| RunError::Write {
+        path: format!("{} (the folder of results)", slashes(folder)),
+        source,
+    })?;
+    if !made {
+        // A run that is stopped leaves no empty folder.
+        let _ = std::fs::remove_dir(folder);
+    }
+    Ok(())
 }
 
 fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {

@@ -246,3 +246,14 @@ fn exchanged_views_never_come_out_good_and_the_end_says_what_to_check() {
     assert!(!column(&scene, "verdict").contains(&"good".to_owned()), "{out}");
     assert!(out.contains("of two views exchanged?"), "{out}");
 }
+
+/// Fault: that the folder of results cannot be written came out at the end, after all the work.
+#[test]
+fn results_that_cannot_be_written_are_told_before_the_work() {
+    let scene = Scene::new();
+    scene.write("results", b"a file in the way");
+    let (code, _, err) = scene.biplane(&["run"]);
+    assert!(code == 4 && err.contains("(the folder of results)"), "{err}");
+    let (_, plan, _) = scene.biplane(&["plan"]);
+    assert!(plan.contains("segment       0       6"), "{plan}");
+}
