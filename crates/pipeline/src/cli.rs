@@ -3,11 +3,13 @@
 //! Results go to stdout, everything else to stderr. Exit codes: 0 good, 1 some items failed, 2 the configuration (or the
 //! command line) is wrong, 3 an input is wrong, 4 the program or the disk failed, 130 stopped by a person.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use biplane_acquisition::inspect::InspectError;
 use biplane_stage::{Clean, Context, Size, Store};
 use clap::{ArgAction, Parser, Subcommand};
 
@@ -17,6 +19,7 @@ use crate::look::{Fate, LookError, counts, look};
 use crate::outcome::Outcome;
 use crate::run::{RunError, run};
 use crate::study::{Study, StudyError};
+use crate::tables::{PoseTable, TableError};
 use crate::{init, reference, summary};
 
 /// How a command ends.
@@ -97,7 +100,10 @@ To correct a pose, write a row into edits/poses.csv beside the pipeline file and
         #[arg(long, default_value_t = 0)]
         threads: usize,
     },
-    /// Say how much a run would do, and do nothing.
+    /// Check the pipeline file and the inputs, and say how much a run would do; nothing is run.
+    #[command(after_help = "Examples:
+  biplane plan                      how many items of each step are cached or would run, and what cannot run
+  biplane explain                   which ones, and why")]
     Plan {
         #[command(flatten)]
         pipeline: Pipeline,
@@ -118,11 +124,19 @@ To correct a pose, write a row into edits/poses.csv beside the pipeline file and
         all: bool,
     },
     /// Show the results of the last run and the size of the store.
+    #[command(
+        after_help = "The fit is the root mean square distance of the outline from its edges, over all views.
+The store, .biplane/ beside the pipeline file, keeps what was computed; deleting it loses only time."
+    )]
     Status {
         #[command(flatten)]
         pipeline: Pipeline,
     },
     /// Free what the store keeps of earlier settings and inputs. Results and edits are left alone.
+    #[command(after_help = "Examples:
+  biplane clean --dry-run           how much it would free
+  biplane clean                     what no item of the study uses any more
+  biplane clean --all               everything: the next run computes all anew")]
     Clean {
         #[command(flatten)]
         pipeline: Pipeline,
@@ -133,13 +147,22 @@ To correct a pose, write a row into edits/poses.csv beside the pipeline file and
         #[arg(long)]
         all: bool,
     },
-    /// Say what files hold: images, calibrations, meshes.
+    /// Say what files hold: images, calibrations, distortion tables, meshes, tables of poses.
+    #[command(after_help = "Examples:
+  biplane inspect cam1.txt                  source, focal length, principal point, convention
+  biplane inspect frames/A frames/A/1.tif   size, bits, levels, frames a second
+  biplane inspect femur.stl starts.csv      size and unit of a mesh; which frames a table has poses for")]
     Inspect {
-        /// Files.
+        /// Files, or folders of images.
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
-    /// Look at a folder of data and write a commented pipeline.toml for it.
+    /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses to fill in.
+    #[command(
+        after_help = "It looks for: folders of pictures side by side (one a fluoroscope), calibrations with the fluoroscope's
+name in theirs, STL meshes, distortion tables, tables of start poses. What it does not find, it says.
+No file is overwritten. Then: read pipeline.toml through, fill in starts.csv, `biplane plan`, `biplane run`."
+    )]
     Init {
         /// The folder; the file is written there, unless there is one.
         #[arg(default_value = ".")]
@@ -219,12 +242,25 @@ fn obey(command: Command) -> Ended {
         Command::Inspect { files } => {
             let mut end = End::Good;
             for file in files {
-                match biplane_acquisition::inspect::describe(&file) {
-                    Ok(text) => print(&format!("{}\n{text}\n", slashes(&file))),
-                    Err(error) => {
-                        eprintln!("{error}");
-                        end = End::BadInput;
+                match (biplane_acquisition::inspect::describe(&file), file.is_file()) {
+                    (Ok(text), _) => print(&format!("{}\n{text}\n", slashes(&file))),
+                    (Err(InspectError::Unknown { .. }), true) if is_pipeline(&file) => {
+                        print(&format!("{}\npipeline file: `biplane plan` checks it\n", slashes(&file)));
                     }
+                    (Err(error), is_file) => match PoseTable::read(&file) {
+                        Ok(table) => print(&format!("{}\n{}\n", slashes(&file), poses(&table))),
+                        // A table with a fault in it is still a table: its own message says more.
+                        Err(fault)
+                            if is_file && !matches!(fault, TableError::NoColumn { .. }) && is_csv(&file) =>
+                        {
+                            eprintln!("{fault}");
+                            end = End::BadInput;
+                        }
+                        Err(_) => {
+                            eprintln!("{error}");
+                            end = End::BadInput;
+                        }
+                    },
                 }
             }
             Ok(end)
@@ -242,6 +278,30 @@ fn obey(command: Command) -> Ended {
             Ok(End::Good)
         }
     }
+}
+
+fn is_pipeline(file: &Path) -> bool {
+    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+fn is_csv(file: &Path) -> bool {
+    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
+}
+
+/// What `inspect` says of a table of poses.
+fn poses(table: &PoseTable) -> String {
+    let mut groups: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
+    for row in &table.rows {
+        groups.entry((row.trial.as_deref().unwrap_or("any"), &row.body)).or_default().push(&row.frame);
+    }
+    let mut text =
+        format!("table of poses (world_from_model, mm, unit quaternions), {} rows", table.rows.len());
+    for ((trial, body), frames) in groups {
+        let ends = [frames.first(), frames.last()].map(|f| f.copied().unwrap_or_default());
+        text +=
+            &format!("\n  trial {trial}, body {body}: {} frames, {} to {}", frames.len(), ends[0], ends[1]);
+    }
+    text
 }
 
 fn load(file: &Path) -> Result<Study, (End, String)> {

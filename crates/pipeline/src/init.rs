@@ -1,7 +1,7 @@
 //! `biplane init`: looks at a folder of data and writes a commented `pipeline.toml` for it.
 //!
 //! What files are is told by what they hold; which belong together is guessed from names, and the file says so. An
-//! existing file is never overwritten.
+//! existing file is never overwritten. Where there are no start poses, a table to fill in is written beside it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use biplane_acquisition::calibration::CalibrationFormat;
 use biplane_acquisition::images::{ImageFile, ImageFormat};
 use biplane_acquisition::meshes::{LengthUnit, read_mesh};
+use biplane_optimisation::MatchParams;
 
 use crate::diagnostics::slashes;
 use crate::tables::{EXAMPLE_HEADER, PoseTable};
@@ -52,6 +53,8 @@ struct Found {
     distortions: Vec<String>,
     meshes: Vec<FoundMesh>,
     starts: Vec<String>,
+    /// The table of start poses that is to be filled in.
+    template: Option<&'static str>,
     files: usize,
 }
 
@@ -61,7 +64,10 @@ type FoundMesh = (String, Option<LengthUnit>, u64);
 /// A recording: its name, and each view's name and pictures.
 type Trial = (String, Vec<(String, String)>);
 
-/// Looks at `folder`, writes `folder/pipeline.toml`, and says what was found and what is missing.
+/// Names the table of start poses may get; the first that no other file has.
+const TABLES: [&str; 2] = ["starts.csv", "start-poses.csv"];
+
+/// Looks at `folder`, writes `folder/pipeline.toml` (and a table of start poses to fill in, if there is none), and says what was found and what is missing.
 ///
 /// # Errors
 /// See [`InitError`].
@@ -80,9 +86,22 @@ pub fn init(folder: &Path) -> Result<String, InitError> {
     let name = std::path::absolute(folder)
         .ok()
         .and_then(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()));
+    if found.starts.is_empty() {
+        found.template = TABLES.into_iter().find(|t| {
+            let path = folder.join(t);
+            !path.exists() || PoseTable::read(&path).is_ok_and(|t| t.rows.is_empty())
+        });
+    }
     let (text, missing) = compose(&found, name.as_deref().unwrap_or("study"));
-    let create = std::fs::File::options().write(true).create_new(true).open(&path);
-    create.and_then(|mut file| file.write_all(text.as_bytes())).map_err(io(&path))?;
+    let create = |path: &Path, text: &str| {
+        let file = std::fs::File::options().write(true).create_new(true).open(path);
+        file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(io(path))
+    };
+    create(&path, &text)?;
+    let table = found.template.map(|t| folder.join(t)).filter(|t| !t.exists() && !trials(&found).is_empty());
+    if let Some(table) = &table {
+        create(table, &template(&found, folder))?;
+    }
     let mut said = format!(
         "wrote {shown}: looked at {} files, found {} folder(s) of pictures, {} calibration(s), {} mesh(es), {} table(s) of \
          start poses\n",
@@ -92,12 +111,16 @@ pub fn init(folder: &Path) -> Result<String, InitError> {
         found.meshes.len(),
         found.starts.len()
     );
+    if let Some(table) = &table {
+        let _ = writeln!(said, "wrote {}: a table of start poses to fill in", slashes(table));
+    }
     for line in &missing {
         let _ = writeln!(said, "missing: {line}");
     }
+    let fill = if missing.is_empty() { "" } else { ", give what is missing" };
     let _ = writeln!(
         said,
-        "Read it through (which file is which was guessed from names), then: biplane run {shown}"
+        "Read {shown} through (which file is which was guessed from names){fill}, then: biplane run {shown}"
     );
     Ok(said)
 }
@@ -158,7 +181,7 @@ fn look_at(root: &Path, path: &Path, found: &mut Found) {
             std::fs::read_to_string(path).ok().and_then(|t| CalibrationFormat::of_text(&t))
         {
             found.calibrations.push((relative(path), format));
-        } else if extension == "csv" && PoseTable::read(path).is_ok() {
+        } else if extension == "csv" && PoseTable::read(path).is_ok_and(|t| !t.rows.is_empty()) {
             found.starts.push(relative(path));
         }
     }
@@ -268,7 +291,11 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
                 offset = 0                  # the second view's number minus the first one's\n\
                 # frame_rate_hz = 100.0\n";
         match found.starts.as_slice() {
-            [] => out += "# starts = \"starts.csv\"     # a few frames are enough; see below\n\n",
+            [] => {
+                let table = found.template.unwrap_or(TABLES[0]);
+                let _ =
+                    writeln!(out, "starts = \"{table}\"     # FILL IN that table: a few frames are enough\n");
+            }
             [first, others @ ..] => {
                 let _ = writeln!(out, "starts = {}", quoted(first));
                 for other in others {
@@ -279,27 +306,69 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
         }
     }
     if found.starts.is_empty() {
+        let table = found.template.unwrap_or(TABLES[0]);
         missing.push(format!(
-            "start poses: a CSV with the columns {EXAMPLE_HEADER}, at least one row for each body"
+            "start poses: at least one row for each body and trial in {table}, with the columns {EXAMPLE_HEADER}"
         ));
-        let _ = writeln!(
-            out,
-            "# Start poses: one row a body and frame, world_from_model in mm, unit quaternion with its scalar first:\n\
-             #   {EXAMPLE_HEADER}\n# Frames without a row start between those that have one.\n"
-        );
+        out += &explained("#");
+        out.push('\n');
+    }
+    if views.is_empty() {
+        out += "# FILL IN one table for each fluoroscope and one for each recording:\n\
+                # [fluoroscope.A]\n# calibration = \"A.txt\"\n# [fluoroscope.B]\n# calibration = \"B.txt\"\n\
+                # [[trial]]\n# name = \"trial1\"\n# frames = { A = \"frames/A\", B = \"frames/B\" }\n# starts = \"starts.csv\"\n\n";
     }
     out += "[segment]                   # how edges are found\n\n[match]                     # how poses are found\n\n\
             [output]\nfolder = \"results\"\n";
     (out, missing)
 }
 
-/// One table a mesh; of meshes that differ by a number at the end only the largest, the others as comments.
-fn compose_bodies(found: &Found, out: &mut String, missing: &mut Vec<String>) {
+/// What a table of start poses holds, as comment lines.
+fn explained(mark: &str) -> String {
+    let reach = MatchParams::default().search_px;
+    [
+        format!("Start poses, one row a body and frame, with the columns {EXAMPLE_HEADER}:"),
+        "  trial, frame, body    names as in pipeline.toml; the frame is the number in the picture's name".to_owned(),
+        "  tx_mm, ty_mm, tz_mm   where the mesh's origin lies in the world of the calibration, mm".to_owned(),
+        "  qw, qx, qy, qz        rotation from mesh to world: unit quaternion, its scalar (qw) first".to_owned(),
+        "That is x_world = R(q) x_mesh + t. Rough is enough: the outline should come within about".to_owned(),
+        format!("{reach} px of its edges ([match] search_px). Frames without a row start between those that have one."),
+    ]
+    .map(|line| format!("{mark} {line}\n"))
+    .concat()
+}
+
+/// A table of start poses without rows, and a row to fill in for each body of each trial.
+fn template(found: &Found, folder: &Path) -> String {
+    let mut out = explained("#");
+    out += "# Take the # and the space from a line below, and write numbers for the dots.\n";
+    let _ = writeln!(out, "{EXAMPLE_HEADER}");
+    for (trial, views) in trials(found) {
+        let first = views.first().and_then(|(_, place)| {
+            let frames = biplane_acquisition::frames::list_frames(folder, place).ok()?;
+            frames.first().map(|f| f.label.clone())
+        });
+        for body in bodies(found).keys() {
+            let frame = first.as_deref().unwrap_or("0000");
+            let _ = writeln!(out, "# {trial},{frame},{body},...,...,...,...,...,...,...");
+        }
+    }
+    out
+}
+
+/// Meshes by the name of their body.
+fn bodies(found: &Found) -> BTreeMap<String, Vec<&FoundMesh>> {
     let mut bodies: BTreeMap<String, Vec<&FoundMesh>> = BTreeMap::new();
     for mesh in &found.meshes {
         let base = stem(&mesh.0).trim_end_matches(|c: char| c.is_ascii_digit() || "_-. ".contains(c));
         bodies.entry(plain(if base.is_empty() { stem(&mesh.0) } else { base })).or_default().push(mesh);
     }
+    bodies
+}
+
+/// One table a mesh; of meshes that differ by a number at the end only the largest, the others as comments.
+fn compose_bodies(found: &Found, out: &mut String, missing: &mut Vec<String>) {
+    let bodies = bodies(found);
     if bodies.is_empty() {
         missing.push("meshes (STL) of the bodies".to_owned());
         *out += "[[body]]\nname = \"femur\"\nmesh = \"FILL IN\"\n\n";

@@ -180,3 +180,21 @@ fn a_misspelt_name_in_starts_is_told_with_what_is_meant() {
         "{said}"
     );
 }
+
+/// Fault: `inspect` did not know the tables of poses that every study has.
+#[test]
+fn inspect_knows_tables_of_poses() {
+    let scene = Scene::new();
+    let (code, out, err) = scene.biplane(&["inspect", "starts.csv", "pipeline.toml"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains("trial squat, body box: 2 frames, 0 to 2") && out.contains("`biplane plan` checks it"),
+        "{out}"
+    );
+    scene.write("starts.csv", format!("{HEADER}squat,0,box,1,2,3,1,0,0,x\n").as_bytes());
+    let (code, _, err) = scene.biplane(&["inspect", "starts.csv", "nowhere.csv"]);
+    assert!(
+        code == 3 && err.contains("starts.csv:2: column `qz`") && err.contains("cannot read nowhere.csv"),
+        "{err}"
+    );
+}

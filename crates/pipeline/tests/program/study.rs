@@ -257,3 +257,33 @@ fn results_that_cannot_be_written_are_told_before_the_work() {
     let (_, plan, _) = scene.biplane(&["plan"]);
     assert!(plan.contains("segment       0       6"), "{plan}");
 }
+
+/// Fault: `init` on a folder without start poses left a study that named no table, and none was there to fill in.
+#[test]
+fn init_writes_a_table_of_starts_to_fill_in_and_never_overwrites_one() {
+    let scene = Scene::new();
+    for name in ["pipeline.toml", "starts.csv"] {
+        std::fs::remove_file(scene.path(name)).unwrap();
+    }
+    let (code, out, _) = scene.biplane(&["init"]);
+    assert!(code == 0 && out.contains("wrote ./starts.csv: a table of start poses to fill in"), "{out}");
+    let table = scene.read("starts.csv");
+    assert!(table.contains("# trial1,0000,box,...") && table.contains(HEADER), "{table}");
+    // The very next step says what is missing, and where.
+    let (code, _, err) = scene.biplane(&["run"]);
+    assert!(
+        code == 3
+            && err.contains("Give at least one frame a row")
+            && err.trim_end().ends_with("in starts.csv"),
+        "{err}"
+    );
+    scene.write("starts.csv", (table + &row(0, 1.0).replace("squat", "trial1")).as_bytes());
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}{err}");
+
+    std::fs::remove_file(scene.path("pipeline.toml")).unwrap();
+    scene.write("starts.csv", b"mine");
+    assert_eq!(scene.biplane(&["init"]).0, 0);
+    assert_eq!(scene.read("starts.csv"), "mine");
+    assert!(scene.read("pipeline.toml").contains("starts = \"start-poses.csv\""));
+}
