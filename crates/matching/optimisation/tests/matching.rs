@@ -39,15 +39,15 @@ fn body() -> Mesh {
     Mesh::from_soup(&soup).unwrap()
 }
 
-/// Two views at right angles, source 1000 mm from the middle, 6.7 px per mm there.
-fn fluoroscopes() -> Vec<Fluoroscope> {
+/// Two views at right angles, source 1000 mm from the middle; `focal_px` over 1000 is the px per mm there.
+fn fluoroscopes(focal_px: f64) -> Vec<Fluoroscope> {
     let make = |view: &str, source: [f64; 3], right: [f64; 3], forward: [f64; 3]| {
         let row = |v: [f64; 3], f: f64, c: f64| std::array::from_fn(|k| f * v[k] + c * forward[k]);
         Fluoroscope::from(&Calibration {
             view: view.to_owned(),
             size: [1024, 1024],
             source,
-            matrix: [row(right, 6700.0, 511.5), row([0.0, 0.0, -1.0], 6700.0, 511.5), forward],
+            matrix: [row(right, focal_px, 511.5), row([0.0, 0.0, -1.0], focal_px, 511.5), forward],
             distortion: None,
         })
     };
@@ -74,7 +74,7 @@ fn views(
         let curves = Curves(vec![Curve { points, closed: false }]);
         View { edges: EdgeField::new(&curves, None), fluoroscope }
     };
-    fluoroscopes().into_iter().enumerate().map(see).collect()
+    fluoroscopes.into_iter().enumerate().map(see).collect()
 }
 
 fn edge(p: &OutlinePoint, inside: f64) -> EdgePoint {
@@ -162,6 +162,16 @@ fn edges_of_something_else_are_said_to_have_failed() {
     let found = find(&views, &rim, &MatchParams::default());
     assert_eq!(found.answer.verdict, Verdict::Failed);
     assert!(!found.answer.reason.is_empty());
+}
+
+/// Regression: an outline shorter than a few correlation lengths had no covariance and always failed.
+#[test]
+fn a_body_that_is_small_in_the_picture_can_be_good() {
+    let rim = RimMesh::new(&body());
+    let views = views_of(fluoroscopes(1500.0), &rim, &truth(), |_, p| Some(edge(p, 0.0)));
+    let found = find(&views, &rim, &MatchParams::default());
+    assert!(found.answer.views.iter().all(|v| v.outline_px < 300.0));
+    assert_eq!(found.answer.verdict, Verdict::Good, "{}", found.answer.reason);
 }
 
 #[test]

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use biplane_geometry::{Point3, Pose};
 use biplane_optimisation::MatchParams;
 
-use crate::{Scene, SceneError, StartOffset, Summary, attempts};
+use crate::{Scene, SceneError, StartOffset, Summary, attempts, turned};
 
 /// A body of a study, measured from seeded starts, and its limits.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +46,19 @@ impl Check {
     pub fn measure(&self, root: &Path, params: Option<&MatchParams>) -> Result<Summary, SceneError> {
         let scene = Scene::load(&root.join(&self.pipeline), &self.body, &root.join(&self.reference))?;
         let default = MatchParams::default();
-        Ok(Summary::of(&attempts(&scene, &self.starts, params.unwrap_or(&default))))
+        let draw = |pose: &Pose, centroid: &Point3, frame| self.starts.draw(pose, centroid, frame);
+        Ok(Summary::of(&attempts(&scene, params.unwrap_or(&default), draw)))
+    }
+
+    /// Measures it from starts turned far away, where all that counts is that no wrong pose is called good.
+    ///
+    /// # Errors
+    /// Something cannot be read.
+    pub fn measure_turned(&self, root: &Path) -> Result<Summary, SceneError> {
+        let scene = Scene::load(&root.join(&self.pipeline), &self.body, &root.join(&self.reference))?;
+        Ok(Summary::of(&attempts(&scene, &MatchParams::default(), |pose, centroid, _| {
+            turned(pose, centroid)
+        })))
     }
 
     /// What of a summary is beyond the limits, one line each. A wrong pose called good always is.

@@ -10,5 +10,5 @@ mod summary;
 pub use checks::{Check, Limits, STARTS, knee, real_knee};
 pub use relative::{noise, seen_from};
 pub use scene::{Posed, Scene, SceneError, read_body, read_reference};
-pub use starts::{Attempt, StartOffset, attempts};
+pub use starts::{Attempt, StartOffset, attempts, turned};
 pub use summary::{Distribution, Summary};

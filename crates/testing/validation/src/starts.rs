@@ -77,8 +77,37 @@ impl StartOffset {
     }
 }
 
-/// Matches every frame of `scene` from every start.
-pub fn attempts(scene: &Scene, offset: &StartOffset, params: &MatchParams) -> Vec<Attempt> {
+/// Turns of [`turned`], degrees.
+const TURNS_DEG: [f64; 7] = [180.0, 170.0, -170.0, 90.0, -90.0, 45.0, -45.0];
+
+/// Start poses turned far away about six axes of the body through its centroid: where a nearly symmetric body has its
+/// wrong basins.
+pub fn turned(reference: &Pose, centroid: &Point3) -> Vec<Pose> {
+    let axes = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 1.0],
+        [1.0, 0.0, 1.0],
+    ];
+    axes.iter()
+        .flat_map(|axis| TURNS_DEG.map(|deg| Vector3::from(*axis).normalize() * deg.to_radians()))
+        .map(|turn| {
+            let axes = reference.rotation() * turn;
+            let twist = Twist { translation: Vector3::zeros(), rotation: axes };
+            reference.moved(&twist, &reference.transform(centroid))
+        })
+        .collect()
+}
+
+/// Matches every frame of `scene` from the starts that `draw` gives for a reference, the body's centroid and the frame's
+/// place.
+pub fn attempts(
+    scene: &Scene,
+    params: &MatchParams,
+    draw: impl Fn(&Pose, &Point3, usize) -> Vec<Pose> + Sync,
+) -> Vec<Attempt> {
     let centroid = *scene.rim.centroid();
     scene
         .frames
@@ -86,31 +115,29 @@ pub fn attempts(scene: &Scene, offset: &StartOffset, params: &MatchParams) -> Ve
         .enumerate()
         .flat_map_iter(|(index, posed)| {
             let Posed { label, reference, views, .. } = posed;
-            offset.draw(reference, &centroid, index).into_iter().enumerate().filter_map(
-                move |(start, from)| {
-                    // Nothing cancels here, so every match gives an answer.
-                    let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
-                    let pose = Pose::from(answer.pose);
-                    let assessed = assess(&scene.rim, views, reference, &params.search());
-                    let rms = |e: &Evidence| (e.squared / e.matched_px.max(1e-9)).sqrt();
-                    let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
-                    let moved = pose.transform(&centroid) - reference.transform(&centroid);
-                    let error = Vector6::new(moved.x, moved.y, moved.z, turn.x, turn.y, turn.z);
-                    let covariance = Matrix6::from_fn(|i, j| answer.covariance[i][j]);
-                    Some(Attempt {
-                        frame: label.clone(),
-                        start,
-                        error: pose.error_against(reference, &centroid),
-                        difference: (turn, moved),
-                        normalised_squared: covariance
-                            .try_inverse()
-                            .map_or(f64::NAN, |i| error.dot(&(i * error))),
-                        reference_rms_px: assessed.evidence.iter().map(rms).fold(0.0, f64::max),
-                        mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
-                        answer,
-                    })
-                },
-            )
+            draw(reference, &centroid, index).into_iter().enumerate().filter_map(move |(start, from)| {
+                // Nothing cancels here, so every match gives an answer.
+                let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
+                let pose = Pose::from(answer.pose);
+                let assessed = assess(&scene.rim, views, reference, &params.search());
+                let rms = |e: &Evidence| (e.squared / e.matched_px.max(1e-9)).sqrt();
+                let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
+                let moved = pose.transform(&centroid) - reference.transform(&centroid);
+                let error = Vector6::new(moved.x, moved.y, moved.z, turn.x, turn.y, turn.z);
+                let covariance = Matrix6::from_fn(|i, j| answer.covariance[i][j]);
+                Some(Attempt {
+                    frame: label.clone(),
+                    start,
+                    error: pose.error_against(reference, &centroid),
+                    difference: (turn, moved),
+                    normalised_squared: covariance
+                        .try_inverse()
+                        .map_or(f64::NAN, |i| error.dot(&(i * error))),
+                    reference_rms_px: assessed.evidence.iter().map(rms).fold(0.0, f64::max),
+                    mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
+                    answer,
+                })
+            })
         })
         .collect()
 }
