@@ -67,6 +67,15 @@ fn views(
     pose: &Pose,
     change: impl Fn(usize, &OutlinePoint) -> Option<EdgePoint>,
 ) -> Vec<View> {
+    views_of(fluoroscopes(6700.0), rim, pose, change)
+}
+
+fn views_of(
+    fluoroscopes: Vec<Fluoroscope>,
+    rim: &RimMesh,
+    pose: &Pose,
+    change: impl Fn(usize, &OutlinePoint) -> Option<EdgePoint>,
+) -> Vec<View> {
     let see = |(number, fluoroscope): (usize, Fluoroscope)| {
         let mut outline = Outline::new();
         outline.trace(rim, pose, &fluoroscope, Sampling { step_px: 1.0 });
