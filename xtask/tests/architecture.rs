@@ -295,7 +295,7 @@ fn nothing_names_the_machine_it_was_made_on() {
     let slash = '/';
     assert!(
         names_a_home(&format!("at {slash}home{slash}me/x"))
-            && !names_a_home("see a.org/home/me and ../work/x")
+            && !names_a_home("see a.org/home/me and ../home/x")
     );
     let registries =
         [["replace", "with"].join("-"), ["sparse", "http"].join("+"), ["[regist", "ries"].concat()];

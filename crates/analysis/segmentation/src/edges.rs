@@ -101,8 +101,8 @@ fn crest(
     }
     let ahead = interpolated(size, w, px + nx, py + ny);
     let behind = interpolated(size, w, px - nx, py - ny);
-    // A pixel owns the crest if the crest passes within half a pixel of it along x or y, whichever the edge crosses more
-    // steeply: then neighbouring pixels do not both claim it, and none is left out.
+    // A pixel owns the crest if the crest lies within half the spacing of pixels along the axis that the edge crosses more
+    // steeply: then neighbours do not both claim it, and none is left out.
     if here < ahead.min(behind) || (ahead > here && behind > here) {
         return None;
     }

@@ -6,7 +6,7 @@
 //! curves. What belongs to which body is not decided here: **curves depend on the frame alone**.
 //!
 //! Known bias, left in: on an edge of radius `R` the crest after smoothing by `s` lies about `s^2 / 2R` towards the centre
-//! of curvature (0.02 px for `R` = 50 px and `s` = 1.5 px), and at the rim of a smooth X-rayed body inside the true outline.
+//! of curvature (0.01 px for `R` = 50 px and `s` = 1 px), and at the rim of a smooth X-rayed body inside the true outline.
 
 mod edges;
 mod link;
