@@ -189,7 +189,7 @@ fn validate(scenes: &[Scenes], starts: &StartOffset) -> Result<bool, SceneError>
                 starts.translation_mm == STARTS.translation_mm && starts.rotation_deg == STARTS.rotation_deg;
             let check = Check { starts: *starts, limits: check.limits.filter(|_| same), ..check };
             let begun = std::time::Instant::now();
-            let summary = check.measure(root(), None)?;
+            let summary = check.measure(root())?;
             println!(
                 "{}: {} starts a frame, each {} mm and {} degrees off, seed {} ({:.1} s)",
                 check.name,

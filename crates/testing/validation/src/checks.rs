@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use biplane_geometry::{Point3, Pose};
-use biplane_optimisation::MatchParams;
 
 use crate::{Scene, SceneError, StartOffset, Summary, attempts, turned};
 
@@ -43,11 +42,10 @@ impl Check {
     ///
     /// # Errors
     /// Something cannot be read.
-    pub fn measure(&self, root: &Path, params: Option<&MatchParams>) -> Result<Summary, SceneError> {
+    pub fn measure(&self, root: &Path) -> Result<Summary, SceneError> {
         let scene = Scene::load(&root.join(&self.pipeline), &self.body, &root.join(&self.reference))?;
-        let default = MatchParams::default();
         let draw = |pose: &Pose, centroid: &Point3, frame| self.starts.draw(pose, centroid, frame);
-        Ok(Summary::of(&attempts(&scene, params.unwrap_or(&default), draw)))
+        Ok(Summary::of(&attempts(&scene, draw)))
     }
 
     /// Measures it from starts turned far away, where all that counts is that no wrong pose is called good.
@@ -56,9 +54,7 @@ impl Check {
     /// Something cannot be read.
     pub fn measure_turned(&self, root: &Path) -> Result<Summary, SceneError> {
         let scene = Scene::load(&root.join(&self.pipeline), &self.body, &root.join(&self.reference))?;
-        Ok(Summary::of(&attempts(&scene, &MatchParams::default(), |pose, centroid, _| {
-            turned(pose, centroid)
-        })))
+        Ok(Summary::of(&attempts(&scene, |pose, centroid, _| turned(pose, centroid))))
     }
 
     /// What of a summary is beyond the limits, one line each. A wrong pose called good always is.

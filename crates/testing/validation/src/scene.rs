@@ -8,7 +8,7 @@ use biplane::tables::same_frame;
 use biplane_acquisition::images::ImageError;
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Mesh, Pose};
-use biplane_optimisation::{EdgeField, View};
+use biplane_optimisation::{EdgeField, MatchParams, View};
 use biplane_outline::RimMesh;
 use biplane_segmentation::{SegmentError, curves};
 use rayon::prelude::*;
@@ -19,6 +19,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// The mesh as the matcher has it.
     pub rim: RimMesh,
+    /// How the study finds poses.
+    pub params: MatchParams,
     /// View names.
     pub names: Vec<String>,
     /// The frames that have a reference.
@@ -144,6 +146,6 @@ impl Scene {
             })
             .collect::<Result<Vec<_>, SceneError>>()?;
         let names = study.views.iter().map(|v| v.name.clone()).collect();
-        Ok(Self { rim: RimMesh::new(&mesh), mesh, names, frames })
+        Ok(Self { rim: RimMesh::new(&mesh), mesh, params: study.matching.clone(), names, frames })
     }
 }

@@ -2,7 +2,7 @@
 
 use biplane_artifact::{Match, Verdict};
 use biplane_geometry::{Point3, Pose, PoseError, Twist, Vector3};
-use biplane_optimisation::{Evidence, MatchParams, assess, match_body};
+use biplane_optimisation::{Evidence, assess, match_body};
 use nalgebra::{Matrix6, Vector6};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -103,12 +103,8 @@ pub fn turned(reference: &Pose, centroid: &Point3) -> Vec<Pose> {
 
 /// Matches every frame of `scene` from the starts that `draw` gives for a reference, the body's centroid and the frame's
 /// place.
-pub fn attempts(
-    scene: &Scene,
-    params: &MatchParams,
-    draw: impl Fn(&Pose, &Point3, usize) -> Vec<Pose> + Sync,
-) -> Vec<Attempt> {
-    let centroid = *scene.rim.centroid();
+pub fn attempts(scene: &Scene, draw: impl Fn(&Pose, &Point3, usize) -> Vec<Pose> + Sync) -> Vec<Attempt> {
+    let (centroid, params) = (*scene.rim.centroid(), &scene.params);
     scene
         .frames
         .par_iter()
