@@ -35,15 +35,8 @@ enum Task {
         /// Starts for each frame.
         #[arg(long, default_value_t = STARTS.count)]
         count: usize,
-        /// How far off each start is, mm.
-        #[arg(long, default_value_t = STARTS.translation_mm)]
-        mm: f64,
-        /// How far off each start is, degrees.
-        #[arg(long, default_value_t = STARTS.rotation_deg)]
-        deg: f64,
-        /// Seed of the starts.
-        #[arg(long, default_value_t = STARTS.seed)]
-        seed: u64,
+        #[command(flatten)]
+        drawn: Drawn,
     },
     /// Compare a study's results/poses.csv with known poses; fails beyond the limits.
     Compare {
@@ -96,16 +89,29 @@ enum Task {
         /// The bodies, each with its mesh (mm) and its known poses: BODY=MESH.stl,REFERENCE.csv
         #[arg(required = true)]
         bodies: Vec<String>,
-        /// How far off, mm.
-        #[arg(long, default_value_t = STARTS.translation_mm)]
-        mm: f64,
-        /// How far off, degrees.
-        #[arg(long, default_value_t = STARTS.rotation_deg)]
-        deg: f64,
-        /// Seed.
-        #[arg(long, default_value_t = STARTS.seed)]
-        seed: u64,
+        #[command(flatten)]
+        drawn: Drawn,
     },
+}
+
+/// How start poses are drawn around known ones.
+#[derive(clap::Args)]
+struct Drawn {
+    /// How far off each start is, mm.
+    #[arg(long, default_value_t = STARTS.translation_mm)]
+    mm: f64,
+    /// How far off each start is, degrees.
+    #[arg(long, default_value_t = STARTS.rotation_deg)]
+    deg: f64,
+    /// Seed of the starts.
+    #[arg(long, default_value_t = STARTS.seed)]
+    seed: u64,
+}
+
+impl Drawn {
+    fn offset(&self, count: usize) -> StartOffset {
+        StartOffset { translation_mm: self.mm, rotation_deg: self.deg, count, seed: self.seed }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -126,10 +132,7 @@ fn main() -> ExitCode {
         return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
     }
     let done = match Arguments::parse().task {
-        Task::Validate { scenes, count, mm, deg, seed } => {
-            let starts = StartOffset { translation_mm: mm, rotation_deg: deg, count, seed };
-            validate(&scenes, &starts)
-        }
+        Task::Validate { scenes, count, drawn } => validate(&scenes, &drawn.offset(count)),
         Task::Compare { pipeline, body, reference, limit_mm, limit_deg } => {
             compare(&pipeline, &body, &reference, limit_mm, limit_deg)
         }
@@ -143,10 +146,7 @@ fn main() -> ExitCode {
                 Ok(false)
             }
         },
-        Task::Starts { trial, bodies, mm, deg, seed } => {
-            let offset = StartOffset { translation_mm: mm, rotation_deg: deg, count: 1, seed };
-            starts(&trial, &bodies, &offset)
-        }
+        Task::Starts { trial, bodies, drawn } => starts(&trial, &bodies, &drawn.offset(1)),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,

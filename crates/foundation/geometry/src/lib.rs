@@ -10,7 +10,7 @@ mod pose;
 
 pub use curve::{Curve, EdgePoint};
 pub use mesh::{Mesh, MeshError, Topology};
-pub use pose::{Detector, Model, Pose, PoseError, Rigid, Twist, World};
+pub use pose::{Model, Pose, PoseError, Rigid, Twist, World};
 
 /// A point in space, mm.
 pub type Point3 = nalgebra::Point3<f64>;

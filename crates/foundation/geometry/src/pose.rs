@@ -19,9 +19,6 @@ pub enum World {}
 /// A body's own frame: the coordinates of its mesh file, mm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Model {}
-/// The frame of one fluoroscope's detector.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Detector {}
 
 /// A rotation followed by a translation (mm), from frame `From` to frame `To`.
 pub struct Rigid<To, From> {

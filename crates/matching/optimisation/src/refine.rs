@@ -2,9 +2,10 @@
 //!
 //! Each view has one nuisance parameter beside the six of the pose: its **inset**, by which the image's edges lie inside
 //! the outline as a whole. At the rim of a smooth body the path of a ray starts from zero, so the steepest gradient lies
-//! inside the true outline (0.45 px on the simulated knee of `fixtures/`), and smoothing adds to it. Left in the
-//! residuals, that bias turned the femoral component by 0.26 degrees in the median; with the inset solved for it is 0.07
-//! (`cargo xtask validate knee`). The inset is eliminated from the normal equations, so a step stays 6 x 6.
+//! inside the true outline, and smoothing adds to it: 0.37 to 0.60 px on the example study (`A_inset_px` and `B_inset_px`
+//! in its `results/poses.csv`). Left in the residuals, that bias turned the femoral component by 0.22 degrees in the median;
+//! with the inset solved for it is 0.07 (`cargo xtask validate knee`, with and without `inset_px = 0.0` under `[match]` in
+//! `pipeline.toml`). The inset is eliminated from the normal equations, so a step stays 6 x 6.
 
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Pose, Twist, Vector3};
