@@ -17,7 +17,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope"],
+    &["biplane-fluoroscope", "biplane-phantom"],
     &["biplane-outline"],
     &["biplane-acquisition", "biplane-segmentation", "biplane-optimisation"],
     &["biplane"],
@@ -29,13 +29,14 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 6] = [
+const METHOD: [&str; 7] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/segmentation",
     "crates/matching/fluoroscope",
     "crates/matching/outline",
     "crates/matching/optimisation",
+    "crates/testing/phantom",
 ];
 
 /// What a crate of a method must not contain: files, environment, clocks, threads, chance that no seed decides, and logs.
