@@ -9,12 +9,16 @@
 //! point is on the outline where the pixel just beside it is under no face at all. Crossings are counted along image
 //! rows in bins, so the whole outline costs little more than the rim. Holes of the shadow have outlines too.
 //!
-//! **Guaranteed:** the outline is that of the union of the projected triangles, exactly, up to the sampling along edges
+//! **Grid outline.** [`GridOutline`] is the thesis's own outline of a cloud of points; it knows no triangles.
+//!
+//! **Guaranteed:** [`Outline`] is that of the union of the projected triangles, exactly, up to the sampling along edges
 //! ([`Sampling::step_px`]); nothing is allocated per evaluation once the buffers have grown. **Not guaranteed:** that
 //! the triangles are the body. They lie inside a convex surface by up to `edge^2 / 8 R`.
 
+mod grid;
 mod rim;
 mod visible;
 
+pub use grid::GridOutline;
 pub use rim::RimMesh;
 pub use visible::{Outline, OutlinePoint, Sampling};
