@@ -9,7 +9,11 @@
 //! bytes. **Not guaranteed:** that real X-rays have nothing else in them.
 
 mod fluoroscope;
+mod mri;
+mod slice_grid;
 mod solid;
 
 pub use fluoroscope::{TrueFluoroscope, biplane};
+pub use mri::{MriFaults, MriScene, ScannedBone, SliceStack, TissueLevels};
+pub use slice_grid::{GridError, Scanner, SliceGrid};
 pub use solid::{Ball, Solid, gradient};
