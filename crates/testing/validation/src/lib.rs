@@ -3,6 +3,7 @@
 
 mod checks;
 mod document;
+pub mod elsewhere;
 pub mod plot;
 mod relative;
 mod scene;
@@ -13,7 +14,7 @@ mod table;
 pub use checks::{Check, Limits, STARTS, knee, real_knee};
 pub use document::{Plot, Section, write};
 pub use relative::{noise, seen_from};
-pub use scene::{Posed, Scene, SceneError, read_body, read_reference};
-pub use starts::{Attempt, StartOffset, attempts, turned};
+pub use scene::{Claim, Made, Origin, Posed, Scene, SceneError, read_body, read_reference};
+pub use starts::{Attempt, StartOffset, attempts, set_a, turned};
 pub use summary::{Distribution, Summary};
 pub use table::{Budgets, Cell, Column, Hold, Limit, Row, Spread, Table};

@@ -1,4 +1,8 @@
-//! One body of a study with a pose to hold the answers against, read and segmented by the product's own code.
+//! One body over frames with poses to hold the answers against: of a study, read and segmented by the product's own code,
+//! or made from known truth.
+//!
+//! **Never the same mesh twice:** a made scene says where its truth's shape came from, and one that claims accuracy
+//! refuses a model that is the mesh of the truth ([`SceneError::SharedMesh`]).
 
 use std::path::{Path, PathBuf};
 
@@ -6,6 +10,7 @@ use biplane::prepare::{InputErrors, Prepared};
 use biplane::study::{Study, StudyError};
 use biplane::tables::same_frame;
 use biplane_acquisition::images::ImageError;
+use biplane_artifact::{Calibration, Content, ContentHash, Curves, ModelMesh};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Mesh, Pose};
 use biplane_optimisation::{EdgeField, MatchParams, View};
@@ -37,6 +42,46 @@ pub struct Posed {
     pub reference: Pose,
     /// One a view.
     pub views: Vec<View>,
+    /// The edges that the views were made of, in recorded pixels.
+    pub curves: Vec<Curves>,
+}
+
+/// Where the shape that made the pictures or outlines came from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Origin {
+    /// A function of space.
+    Solid,
+    /// A mesh, with its content and number of points.
+    Mesh(ContentHash, usize),
+    /// A file of another program that says so.
+    OtherFile,
+}
+
+impl Origin {
+    /// This mesh.
+    pub fn mesh(mesh: &Mesh) -> Self {
+        Self::Mesh(ModelMesh(mesh.clone()).content_hash(), mesh.vertices().len())
+    }
+}
+
+/// What the figures of a scene say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Claim {
+    /// How near the answers are to the truth: truth and model must be different descriptions of the body.
+    Accuracy,
+    /// How well the search ends where it should: truth and model may be one mesh.
+    SearchAlone,
+}
+
+/// How a scene of known truth was made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Made {
+    /// Where the truth's shape came from.
+    pub origin: Origin,
+    /// What its figures say.
+    pub claim: Claim,
+    /// How poses are sought.
+    pub params: MatchParams,
 }
 
 /// Why a scene could not be read.
@@ -66,6 +111,17 @@ pub enum SceneError {
         body: String,
         /// What there is.
         known: String,
+    },
+    /// Accuracy cannot be claimed.
+    #[error(
+        "truth and model are one mesh, or the truth's has no more points ({truth}) than the model's ({model}): \
+         accuracy cannot be claimed"
+    )]
+    SharedMesh {
+        /// Points of the truth's mesh.
+        truth: usize,
+        /// Points of the model's.
+        model: usize,
     },
     /// The reference.
     #[error(
@@ -136,16 +192,59 @@ impl Scene {
             .into_par_iter()
             .map(|(job, reference)| {
                 let trial = &study.trials[job.trial];
-                let views = trial.frames.iter().zip(&job.pictures).map(|((view, _), source)| {
+                let (mut views, mut all) = (Vec::new(), Vec::new());
+                for ((view, _), source) in trial.frames.iter().zip(&job.pictures) {
                     let curves = curves(&prepared.read(source)?, &study.segment)?;
                     let fluoroscope = fluoroscopes[*view].clone();
-                    Ok(View { edges: EdgeField::new(&curves, fluoroscope.distortion()), fluoroscope })
-                });
-                let views = views.collect::<Result<Vec<_>, SceneError>>()?;
-                Ok(Posed { trial: trial.name.clone(), label: job.label.clone(), reference, views })
+                    views
+                        .push(View { edges: EdgeField::new(&curves, fluoroscope.distortion()), fluoroscope });
+                    all.push(curves);
+                }
+                Ok(Posed {
+                    trial: trial.name.clone(),
+                    label: job.label.clone(),
+                    reference,
+                    views,
+                    curves: all,
+                })
             })
             .collect::<Result<Vec<_>, SceneError>>()?;
         let names = study.views.iter().map(|v| v.name.clone()).collect();
         Ok(Self { rim: RimMesh::new(&mesh), mesh, params: study.matching.clone(), names, frames })
+    }
+    /// A scene of known truth: label, true pose and curves (one a view, recorded pixels) of each frame, and the mesh to be
+    /// matched.
+    ///
+    /// # Errors
+    /// [`SceneError::SharedMesh`] where it claims accuracy without a right to.
+    pub fn made(
+        made: Made,
+        mesh: &Mesh,
+        calibrations: &[Calibration],
+        frames: Vec<(String, Pose, Vec<Curves>)>,
+    ) -> Result<Self, SceneError> {
+        let Made { origin, claim, params } = made;
+        if let (Claim::Accuracy, Origin::Mesh(hash, truth)) = (claim, origin) {
+            let model = mesh.vertices().len();
+            if hash == ModelMesh(mesh.clone()).content_hash() || truth <= model {
+                return Err(SceneError::SharedMesh { truth, model });
+            }
+        }
+        let fluoroscopes: Vec<Fluoroscope> = calibrations.iter().map(Fluoroscope::from).collect();
+        let posed = |(label, reference, curves): (String, Pose, Vec<Curves>)| {
+            let view = |(fluoroscope, curves): (&Fluoroscope, &Curves)| View {
+                edges: EdgeField::new(curves, fluoroscope.distortion()),
+                fluoroscope: fluoroscope.clone(),
+            };
+            let views = fluoroscopes.iter().zip(&curves).map(view).collect();
+            Posed { trial: String::new(), label, reference, views, curves }
+        };
+        Ok(Self {
+            rim: RimMesh::new(mesh),
+            mesh: mesh.clone(),
+            params,
+            names: calibrations.iter().map(|c| c.view.clone()).collect(),
+            frames: frames.into_iter().map(posed).collect(),
+        })
     }
 }

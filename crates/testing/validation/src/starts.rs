@@ -41,6 +41,8 @@ pub struct Attempt {
     pub mean_target_mm: f64,
     /// Squared error over the stated covariance: 6 on average where the covariance is right.
     pub normalised_squared: f64,
+    /// Time of the match, s.
+    pub seconds: f64,
     /// Root mean square residual of the outline at the reference pose, px: the larger view's.
     pub reference_rms_px: f64,
 }
@@ -75,6 +77,32 @@ impl StartOffset {
             })
             .collect()
     }
+}
+
+/// Offsets of [`set_a`]: standard deviation and cut, mm or degrees.
+const SET_A: (f64, f64) = (10.0, 20.0);
+
+/// Start poses as the thesis draws them: each of the six pose variables (Eq. 3.1, about the centroid) off by a Gaussian
+/// number of standard deviation 10 mm or degrees, drawn again beyond 20. They depend on seed and frame alone.
+pub fn set_a(reference: &Pose, centroid: &Point3, seed: u64, frame: usize, count: usize) -> Vec<Pose> {
+    let mut random =
+        Xoshiro256PlusPlus::seed_from_u64(seed.wrapping_mul(7_368_787).wrapping_add(frame as u64));
+    let mut offset = || loop {
+        // Box and Muller (1958).
+        let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+        let drawn = SET_A.0 * (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos();
+        if drawn.abs() <= SET_A.1 {
+            break drawn;
+        }
+    };
+    let (angles, t) = reference.to_thesis(centroid.coords);
+    (0..count)
+        .map(|_| {
+            let moved = t + Vector3::from_fn(|_, _| offset());
+            let [a, b, c] = angles.map(|angle| angle + offset().to_radians());
+            Pose::from_thesis(a, b, c, moved, centroid.coords)
+        })
+        .collect()
 }
 
 /// Turns of [`turned`], degrees.
@@ -113,7 +141,9 @@ pub fn attempts(scene: &Scene, draw: impl Fn(&Pose, &Point3, usize) -> Vec<Pose>
             let Posed { label, reference, views, .. } = posed;
             draw(reference, &centroid, index).into_iter().enumerate().filter_map(move |(start, from)| {
                 // Nothing cancels here, so every match gives an answer.
+                let begun = std::time::Instant::now();
                 let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
+                let seconds = begun.elapsed().as_secs_f64();
                 let pose = Pose::from(answer.pose);
                 let assessed = assess(&scene.rim, views, reference, &params.search());
                 let rms = |e: &Evidence| (e.squared / e.matched_px.max(1e-9)).sqrt();
@@ -131,6 +161,7 @@ pub fn attempts(scene: &Scene, draw: impl Fn(&Pose, &Point3, usize) -> Vec<Pose>
                         .map_or(f64::NAN, |i| error.dot(&(i * error))),
                     reference_rms_px: assessed.evidence.iter().map(rms).fold(0.0, f64::max),
                     mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
+                    seconds,
                     answer,
                 })
             })
