@@ -8,12 +8,24 @@
 //! **Guaranteed:** truth is apart from what spoils a picture (blur, noise, distortion); the same seed gives the same
 //! bytes. **Not guaranteed:** that real X-rays have nothing else in them.
 
+mod blur;
+mod distortion;
+mod exposure;
 mod fluoroscope;
+mod material;
 mod mri;
+mod raster;
+mod scene;
 mod slice_grid;
 mod solid;
+mod transmission;
 
+pub use distortion::IntensifierDistortion;
+pub use exposure::{Exposure, picture};
 pub use fluoroscope::{TrueFluoroscope, biplane};
+pub use material::Material;
 pub use mri::{MriFaults, MriScene, ScannedBone, SliceStack, TissueLevels};
+pub use scene::{Absorber, Ellipsoid, PosedBody, Scene, Surface};
 pub use slice_grid::{GridError, Scanner, SliceGrid};
 pub use solid::{Ball, Solid, gradient};
+pub use transmission::{PictureError, Transmission};
