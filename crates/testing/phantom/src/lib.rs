@@ -8,24 +8,38 @@
 //! **Guaranteed:** truth is apart from what spoils a picture (blur, noise, distortion); the same seed gives the same
 //! bytes. **Not guaranteed:** that real X-rays have nothing else in them.
 
+mod bead_frame;
 mod blur;
+mod bodies;
 mod distortion;
 mod exposure;
 mod fluoroscope;
+mod ideal_outline;
 mod material;
+mod meshing;
 mod mri;
+mod plate;
+mod prism;
 mod raster;
 mod scene;
+mod shadow;
+pub mod shapes;
 mod slice_grid;
 mod solid;
 mod transmission;
 
+pub use bead_frame::{BeadFrame, BeadFrameError, BeadLayout, SeenBead, Tube};
+pub use bodies::{Body, DistalFemur, FemoralComponent, Patella, ProximalTibia, TibialTray};
 pub use distortion::IntensifierDistortion;
 pub use exposure::{Exposure, picture};
 pub use fluoroscope::{TrueFluoroscope, biplane};
+pub use ideal_outline::ideal_outline;
 pub use material::Material;
+pub use meshing::{MeshingError, ball_mesh, mesh};
 pub use mri::{MriFaults, MriScene, ScannedBone, SliceStack, TissueLevels};
+pub use plate::{Plate, PlatePlacement, Scratch, SeenSpot, Spot, SpotKind, SpotPattern, SpotRadii};
 pub use scene::{Absorber, Ellipsoid, PosedBody, Scene, Surface};
+pub use shadow::{area_centroid, shadow_outline};
 pub use slice_grid::{GridError, Scanner, SliceGrid};
 pub use solid::{Ball, Solid, gradient};
 pub use transmission::{PictureError, Transmission};

@@ -1,0 +1,70 @@
+//! A femoral component that replaces the cruciate ligaments: two condyles, an anterior flange, a box.
+
+use biplane_geometry::Point3;
+
+use crate::Solid;
+use crate::shapes::{capsule, difference, half_space, hypotenuse, intersection, plate, union};
+
+/// About 68 mm wide, 61 mm deep and 54 mm high; condyles 8 to 10 mm thick. Right knee: the lateral condyle is the smaller
+/// one behind, and the flange is higher on its side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FemoralComponent;
+
+/// Lowest height of the condyles, where they meet the tibia.
+const DISTAL: f64 = -26.0;
+/// Radius of the sagittal profile from the lowest point forward.
+const DISTAL_RADIUS: f64 = 37.0;
+/// Where along y the posterior arc passes into the distal one.
+const JUNCTION: f64 = -9.0;
+
+/// The condyles' profile seen from the side (the J-curve): an arc of the radius `posterior`, from the lowest point on a
+/// larger one, and from its foremost point straight up.
+fn profile(y: f64, z: f64, posterior: f64) -> f64 {
+    let behind = hypotenuse(y - JUNCTION, z - (DISTAL + posterior)) - posterior;
+    let before = hypotenuse(y - JUNCTION, (z - (DISTAL + DISTAL_RADIUS)).min(0.0)) - DISTAL_RADIUS;
+    behind.min(before.max(JUNCTION - y))
+}
+
+/// A condyle: the profile, barrel-shaped from side to side about the plane `x`.
+fn condyle(p: &Point3, x: f64, posterior: f64) -> f64 {
+    const BARREL: f64 = 30.0;
+    hypotenuse((profile(p.y, p.z, posterior) + BARREL).max(0.0), p.x - x) - BARREL
+}
+
+/// The bone's place: five planes, as the saw leaves them.
+fn bone_cuts(p: &Point3) -> f64 {
+    const FILLET: f64 = 3.0;
+    let planes = [
+        half_space(p, [0.0, -20.5, 0.0], [0.0, -1.0, 0.0]),
+        half_space(p, [0.0, -20.5, -9.0], [0.0, -1.0, -1.0]),
+        half_space(p, [0.0, 0.0, -17.0], [0.0, 0.0, -1.0]),
+        half_space(p, [0.0, 19.0, -7.5], [0.0, 1.0, -1.0]),
+        half_space(p, [0.0, 19.0, 0.0], [0.0, 1.0, -0.06]),
+    ];
+    planes.into_iter().reduce(|a, b| intersection(a, b, FILLET)).unwrap_or(f64::INFINITY)
+}
+
+impl Solid for FemoralComponent {
+    fn value(&self, p: &Point3) -> f64 {
+        const EDGE: f64 = 3.5;
+        let condyles = union(condyle(p, -20.0, 22.0), condyle(p, 20.0, 20.0), 7.0);
+        // The flange narrows upwards; its upper end rises to the lateral side.
+        let sides = half_space(&Point3::new(p.x.abs(), p.y, p.z), [34.0, 0.0, -6.0], [1.0, 0.0, 0.22])
+            .max(p.x.abs() - 34.0);
+        let flange_top = half_space(p, [0.0, 0.0, 27.0], [-0.12, 0.0, 1.0]);
+        let posterior_top = half_space(p, [0.0, -26.0, 7.0], [0.0, -0.25, 1.0]);
+        let top = posterior_top.min(flange_top.max(4.0 - p.y));
+        let outer = intersection(intersection(condyles, sides, EDGE), top, EDGE);
+        let shell = difference(outer, bone_cuts(p), EDGE);
+        // Two walls stand on the distal part and bound the slot for the insert's post; a cam joins the condyles behind.
+        let side = intersection((p.y + 4.0).abs() - 14.0, (p.z + 10.0).abs() - 15.0, 4.0);
+        let walls = plate(side, p.x.abs() - 10.0, 2.0, 1.2);
+        let with_walls = union(shell, intersection(walls, condyles, 2.0), 3.0);
+        let slotted = difference(with_walls, intersection(p.x.abs() - 8.3, p.y - 9.0, 4.0), 3.0);
+        union(slotted, capsule(p, [-12.0, -20.0, -3.0], [12.0, -20.0, -3.0], 4.0), 2.0)
+    }
+
+    fn bounds(&self) -> (Point3, Point3) {
+        (Point3::new(-35.0, -32.0, -27.5), Point3::new(35.0, 29.5, 32.5))
+    }
+}
