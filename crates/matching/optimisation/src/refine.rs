@@ -34,6 +34,8 @@ pub struct RefineParams {
     pub contrast: f64,
     /// Standard deviation that the inset is expected to have, px; 0 holds it at zero.
     pub inset_px: f64,
+    /// A descent ends when the centroid moves by less than this, mm, and the surface by turning as little.
+    pub still_mm: f64,
     /// Steps at most with the last search radius.
     pub most_steps: u32,
 }
@@ -44,8 +46,6 @@ const SHRINK: f64 = 0.75;
 const MIN_COSINE: (f64, f64) = (0.71, 0.906);
 /// Distance of outline samples, px: while searching, and at the end.
 const SPACING_PX: (f64, f64) = (4.0, 1.0);
-/// A descent ends when the centroid moves by less than this, mm, and the surface by turning as little.
-const STILL_MM: f64 = 2e-4;
 /// A descent whose last steps swing by no more than this, mm, because samples change their edge point, has come to rest too.
 const SWING_MM: f64 = 0.01;
 /// Largest step, mm of the centroid or of the surface by turning.
@@ -158,7 +158,7 @@ pub fn refine(mesh: &RimMesh, views: &[View], start: &Pose, params: &RefineParam
         let size = twist.translation.norm().max(twist.rotation.norm() * mesh.radius_of_gyration());
         if last {
             final_steps += 1;
-            still = size < STILL_MM || (final_steps == params.most_steps && size < SWING_MM);
+            still = size < params.still_mm || (final_steps == params.most_steps && size < SWING_MM);
         }
         radius = (radius * SHRINK).max(params.final_search_px);
     }

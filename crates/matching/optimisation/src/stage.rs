@@ -1,6 +1,6 @@
 //! The stage `match`: the curves of a frame's views, their calibrations, a body's mesh and a start in; its pose out.
 
-use biplane_artifact::{Calibration, Curves, Match, ModelMesh, Start};
+use biplane_artifact::{Calibration, Curves, Match, ModelMesh, Start, Verdict, ViewFit};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
 use biplane_outline::RimMesh;
@@ -9,7 +9,10 @@ use nalgebra::Matrix6;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{EdgeField, Limits, RefineParams, Refined, View, judge, refine, starts};
+use crate::{
+    BinghamParams, BinghamView, EdgeField, Limits, RefineParams, Refined, View, judge, match_bingham,
+    own_contour, refine, starts,
+};
 
 inputs! {
     /// One body in one frame, seen in any number of views.
@@ -35,6 +38,16 @@ pub enum Contrast {
     Bright,
 }
 
+/// Which objective and optimiser find the pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// The exact rim of the mesh against edges of its direction, by Levenberg and Marquardt.
+    Rim,
+    /// The thesis's own: outline on a grid, mean distance from the contour, bounded BFGS from ten starts.
+    Bingham2006,
+}
+
 /// Steps of a descent with its last search radius at most; most need five to ten.
 const FINAL_STEPS: u32 = 30;
 
@@ -42,6 +55,8 @@ const FINAL_STEPS: u32 = 30;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MatchParams {
+    /// How poses are found: `"rim"`, or `"bingham2006"` for the thesis's own method, slower and less sure, to compare with.
+    pub method: Method,
     /// How far from its start an outline looks for edges, px. As far as starts are wrong, and no farther.
     #[schemars(range(min = 1.0, max = 500.0))]
     pub search_px: f64,
@@ -52,6 +67,9 @@ pub struct MatchParams {
     /// them, px (1 sigma). It is solved for in each view beside the pose; 0 holds it at zero.
     #[schemars(range(min = 0.0, max = 20.0))]
     pub inset_px: f64,
+    /// A search ends when a step moves the body by less than this, mm.
+    #[schemars(range(min = 1e-9, max = 1.0))]
+    pub still_mm: f64,
     /// `"dark"`, or `"bright"` if bodies are brighter than their surroundings.
     pub contrast: Contrast,
     /// Further starts around the given one, tried while no match is good.
@@ -79,14 +97,18 @@ pub struct MatchParams {
     pub good_sigma_mm: f64,
     /// and its rotation to this, degrees (1 sigma). Wrong poses that fitted nearly as well as right ones had 0.86 or more.
     pub good_sigma_deg: f64,
+    /// Settings of the thesis's own method.
+    pub bingham2006: BinghamParams,
 }
 
 impl Default for MatchParams {
     fn default() -> Self {
         Self {
+            method: Method::Rim,
             search_px: 40.0,
             final_search_px: 3.0,
             inset_px: 1.0,
+            still_mm: 2e-4,
             contrast: Contrast::Dark,
             retries: 12,
             retry_mm: 4.0,
@@ -98,6 +120,7 @@ impl Default for MatchParams {
             failed_rms_px: 2.0,
             good_sigma_mm: 0.5,
             good_sigma_deg: 0.75,
+            bingham2006: BinghamParams::default(),
         }
     }
 }
@@ -135,9 +158,11 @@ impl MatchParams {
     /// Names the first parameter that is out of its range.
     pub fn check(&self) -> Result<(), MatchError> {
         let Self {
+            method: _,
             search_px,
             final_search_px,
             inset_px,
+            still_mm,
             contrast: _,
             retries,
             retry_mm,
@@ -149,6 +174,7 @@ impl MatchParams {
             failed_rms_px,
             good_sigma_mm,
             good_sigma_deg,
+            bingham2006,
         } = *self;
         let within = |name, value: f64, low: f64, high: f64, expected| {
             if (low..=high).contains(&value) {
@@ -161,6 +187,7 @@ impl MatchParams {
         within("search_px", search_px, 1.0, 500.0, "1 to 500 px")?;
         within("final_search_px", final_search_px, 0.5, 50.0, "0.5 to 50 px")?;
         within("inset_px", inset_px, 0.0, 20.0, "0 to 20 px")?;
+        within("still_mm", still_mm, 1e-9, 1.0, "1e-9 to 1 mm")?;
         within("retries", retries as f64, 0.0, 1000.0, "0 to 1000")?;
         within("retry_mm", retry_mm, 0.0, 1000.0, "0 to 1000 mm")?;
         within("retry_deg", retry_deg, 0.0, 180.0, "0 to 180 degrees")?;
@@ -169,7 +196,8 @@ impl MatchParams {
         within("good_rms_px", good_rms_px, 0.0, any, "0 or more px")?;
         within("failed_rms_px", failed_rms_px, good_rms_px, any, "at least good_rms_px")?;
         within("good_sigma_mm", good_sigma_mm, 0.0, any, "0 or more mm")?;
-        within("good_sigma_deg", good_sigma_deg, 0.0, any, "0 or more degrees")
+        within("good_sigma_deg", good_sigma_deg, 0.0, any, "0 or more degrees")?;
+        bingham2006.check()
     }
 
     /// How a descent searches.
@@ -182,11 +210,12 @@ impl MatchParams {
                 Contrast::Bright => -1.0,
             },
             inset_px: self.inset_px,
+            still_mm: self.still_mm,
             most_steps: FINAL_STEPS,
         }
     }
 
-    fn limits(&self) -> Limits {
+    pub(crate) fn limits(&self) -> Limits {
         Limits {
             matched_share: (self.good_share, self.failed_share),
             rms_px: (self.good_rms_px, self.failed_rms_px),
@@ -223,21 +252,32 @@ pub fn match_body(
         if best.as_ref().is_none_or(|b| refined.score() > b.score()) {
             best = Some(refined);
         }
-        if best.as_ref().is_some_and(|b| judge(b, names, &limits).1 == biplane_artifact::Verdict::Good) {
+        if best.as_ref().is_some_and(|b| judge(b, names, &limits).1 == Verdict::Good) {
             break;
         }
     }
     let Some(best) = best else { return Err(MatchError::Cancelled) };
     let (fits, verdict, reason) = judge(&best, names, &limits);
-    let covariance = best.covariance.unwrap_or_else(|| Matrix6::from_element(f64::MAX));
-    Ok(Match {
-        pose: best.pose.into(),
+    Ok(answer(&best, fits, verdict, reason, steps))
+}
+
+/// The answer of a match, as it is stored.
+pub(crate) fn answer(
+    found: &Refined,
+    views: Vec<ViewFit>,
+    verdict: Verdict,
+    reason: String,
+    iterations: u32,
+) -> Match {
+    let covariance = found.covariance.unwrap_or_else(|| Matrix6::from_element(f64::MAX));
+    Match {
+        pose: found.pose.into(),
         verdict,
         reason,
-        views: fits,
+        views,
         covariance: std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)])),
-        iterations: steps,
-    })
+        iterations,
+    }
 }
 
 /// The stage `match`.
@@ -269,6 +309,27 @@ impl Stage for MatchBody {
             })
             .collect();
         let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
-        match_body(&mesh, &views, &names, &inputs.start.0, params, || context.cancelled())
+        let start = &inputs.start.0;
+        match params.method {
+            Method::Rim => match_body(&mesh, &views, &names, start, params, || context.cancelled()),
+            Method::Bingham2006 => {
+                let centre = start.transform(mesh.centroid());
+                let contours: Vec<BinghamView> = inputs
+                    .curves
+                    .iter()
+                    .zip(&views)
+                    .map(|(curves, View { fluoroscope, .. })| {
+                        let own = own_contour(curves, &mesh, fluoroscope, start, params);
+                        // Millimetres at the depth of the body where it starts; behind the source nothing is seen anyway.
+                        let mm_per_px =
+                            fluoroscope.project(&centre).map_or(1.0, |p| fluoroscope.mm_per_px(p.depth));
+                        BinghamView::new(fluoroscope.clone(), &own, mm_per_px)
+                    })
+                    .collect();
+                let points = inputs.model.0.vertices();
+                let judged = (views.as_slice(), names.as_slice());
+                match_bingham(points, &contours, &mesh, judged, start, params, || context.cancelled())
+            }
+        }
     }
 }
