@@ -25,7 +25,7 @@ pub const SIGMA_PX: f64 = 0.01;
 /// Most cells on a side of the square that is divided, px: a body so near the source that it needs more has no outline.
 const LARGEST_SQUARE: i64 = 1 << 14;
 /// Shortest step along a ray past the surface, mm.
-const SHORTEST_STEP_MM: f64 = 0.2;
+const SHORTEST_STEP_MM: f64 = 0.4;
 
 /// The boundaries of a solid's shadow in one view, outer ones and holes, in ideal pixels.
 ///
@@ -121,7 +121,7 @@ impl<'a> Shadow<'a> {
         false
     }
 
-    /// The cells of one pixel that the outline may pass, by their first corner.
+    /// The cells of a pixel's width that the outline may pass, by their first corner: found in squares of two by two.
     fn cells(&self, first: [i64; 2], side: i64, cells: &mut Vec<[i64; 2]>) {
         let half = side as f64 / 2.0;
         let reach = half * 2.0_f64.sqrt() * self.mm_per_px;
@@ -130,13 +130,14 @@ impl<'a> Shadow<'a> {
         if !self.reaches(&middle, reach * 1.1, reach * 0.1) || self.reaches(&middle, -reach, reach * 0.1) {
             return;
         }
-        if side == 1 {
-            cells.push(first);
-            return;
-        }
         let s = side / 2;
         for [x, y] in [[0, 0], [s, 0], [0, s], [s, s]] {
-            self.cells([first[0] + x, first[1] + y], s, cells);
+            let quarter = [first[0] + x, first[1] + y];
+            if s == 1 {
+                cells.push(quarter);
+            } else {
+                self.cells(quarter, s, cells);
+            }
         }
     }
 
@@ -145,20 +146,22 @@ impl<'a> Shadow<'a> {
     fn chains(&self) -> Vec<Vec<Point2>> {
         let mut cells = Vec::new();
         self.cells(self.first, self.side, &mut cells);
-        let dark = |x: f64, y: f64| self.reaches(&Point2::new(x, y), 0.0, SHORTEST_STEP_MM * 0.05);
-        let mut corners: BTreeMap<[i64; 2], bool> = BTreeMap::new();
+        // No value at a corner of a square of two pixels that the outline passes is larger in size than this.
+        let ceiling = 3.0 * self.mm_per_px;
+        let value = |x: f64, y: f64| self.least(&Point2::new(x, y), ceiling).map_or(ceiling, |found| found.0);
+        let mut corners: BTreeMap<[i64; 2], f64> = BTreeMap::new();
         // From the side of a cell that a chain enters by to the one that it leaves by.
         let mut next: BTreeMap<Side, Side> = BTreeMap::new();
         for [x, y] in cells {
             let inside = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]]
-                .map(|c| *corners.entry(c).or_insert_with(|| dark(c[0] as f64, c[1] as f64)));
+                .map(|c| *corners.entry(c).or_insert_with(|| value(c[0] as f64, c[1] as f64)) < 0.0);
             // Sides between neighbouring corners, in the order of the corners.
             let sides = [(x, y, 0), (x + 1, y, 1), (x, y + 1, 0), (x, y, 1)];
             let leaves = |k: usize| inside[k] && !inside[(k + 1) % 4];
             let enters = |k: usize| !inside[k] && inside[(k + 1) % 4];
             let crossings = (0..4).filter(|k| leaves(*k)).count();
             // Of four crossings the middle decides whether the two dark corners hang together.
-            let joined = crossings == 2 && dark(x as f64 + 0.5, y as f64 + 0.5);
+            let joined = crossings == 2 && value(x as f64 + 0.5, y as f64 + 0.5) < 0.0;
             for k in (0..4).filter(|k| leaves(*k)) {
                 let turn = if joined { [1, 2, 3] } else { [3, 2, 1] };
                 if let Some(to) = turn.into_iter().map(|t| (k + t) % 4).find(|to| enters(*to)) {
@@ -171,7 +174,7 @@ impl<'a> Shadow<'a> {
             let mut chain = Vec::new();
             let mut at = start;
             while let Some(to) = next.remove(&at) {
-                chain.push(self.crossing(at));
+                chain.extend(crossing(&corners, at));
                 at = to;
             }
             if at == start {
@@ -181,31 +184,17 @@ impl<'a> Shadow<'a> {
         chains
     }
 
-    /// Where the outline crosses a side of a cell, to within a sixteenth of a pixel.
-    fn crossing(&self, (x, y, along): Side) -> Point2 {
-        let from = Point2::new(x as f64, y as f64);
-        let step = if along == 0 { Vector2::x() } else { Vector2::y() };
-        let dark = |s: f64| self.reaches(&(from + step * s), 0.0, SHORTEST_STEP_MM * 0.05);
-        let (mut low, mut high) = (0.0, 1.0);
-        let first = dark(0.0);
-        for _ in 0..3 {
-            let middle = (low + high) / 2.0;
-            if dark(middle) == first { low = middle } else { high = middle }
-        }
-        from + step * ((low + high) / 2.0)
-    }
-
-    /// The least value along a pixel's ray, and the point where it is.
-    fn least(&self, pixel: &Point2) -> Option<(f64, Point3)> {
+    /// The least value along a pixel's ray, and the point where it is; none where all are above `ceiling`.
+    fn least(&self, pixel: &Point2, ceiling: f64) -> Option<(f64, Point3)> {
         let ray = self.ray(pixel);
-        let (begin, end) = self.range(&ray, 0.0)?;
+        let (begin, end) = self.range(&ray, ceiling)?;
         let value = |s: f64| self.solid.value(&(self.source + ray * s));
-        let mut best = (f64::INFINITY, begin);
+        let mut best = (ceiling, end);
         // Three samples in a row, the one in the middle lowest, hold a least value; most cannot hold a new lowest one.
         let mut before = (begin, value(begin));
         let mut at = before;
         while at.0 < end {
-            let after = at.0 + (at.1 - best.0.min(at.1 * 0.5)).max(SHORTEST_STEP_MM);
+            let after = at.0 + (at.1 - best.0).max(SHORTEST_STEP_MM);
             let after = (after, value(after));
             if at.1 <= before.1 && at.1 <= after.1 {
                 let bound = |a: (f64, f64), b: (f64, f64)| (a.1 + b.1 - (b.0 - a.0)) / 2.0;
@@ -218,14 +207,14 @@ impl<'a> Shadow<'a> {
             }
             (before, at) = (at, after);
         }
-        best.0.is_finite().then(|| (best.0, self.source + ray * best.1))
+        (best.1 < end).then(|| (best.0, self.source + ray * best.1))
     }
 
     /// From a guess to the outline: the point, with the outline's normal. None where it leads away by pixels.
     fn refine(&self, guess: &Point2) -> Option<EdgePoint> {
         let mut pixel = *guess;
         for _ in 0..40 {
-            let (value, foot) = self.least(&pixel)?;
+            let (value, foot) = self.least(&pixel, 4.0 * self.mm_per_px)?;
             let normal = gradient(self.solid, &foot);
             // The ray at this pixel moves at the foot by the detector's movement times the foot's share of the way.
             let on_detector = self.corner + self.across[0] * pixel.x + self.across[1] * pixel.y;
@@ -253,10 +242,18 @@ impl<'a> Shadow<'a> {
 /// A side of a cell: its first corner, and 0 where it runs along x, 1 along y.
 type Side = (i64, i64, u8);
 
+/// Where the outline crosses a side of a cell, taking the values at its ends for those of a straight line.
+fn crossing(corners: &BTreeMap<[i64; 2], f64>, (x, y, along): Side) -> Option<Point2> {
+    let step = if along == 0 { [1, 0] } else { [0, 1] };
+    let (from, to) = (corners.get(&[x, y])?, corners.get(&[x + step[0], y + step[1]])?);
+    let share = from / (from - to);
+    Some(Point2::new(x as f64 + share * step[0] as f64, y as f64 + share * step[1] as f64))
+}
+
 /// The least value of a function between two places around a lower one `(place, value)`: Brent's method with parabolas.
 fn lowest(f: &impl Fn(f64) -> f64, low: f64, middle: (f64, f64), high: f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.381_966_011_250_105;
-    const NEAR_MM: f64 = 2e-7;
+    const NEAR_MM: f64 = 2e-6;
     let (mut a, mut b) = (low, high);
     let (mut x, mut w, mut v) = (middle, middle, middle);
     let (mut step, mut previous) = (0.0_f64, 0.0_f64);

@@ -13,6 +13,7 @@
 use std::collections::BTreeMap;
 
 use biplane_geometry::{Mesh, Point3, Vector3};
+use nalgebra::Matrix3;
 
 use crate::{Solid, gradient};
 
@@ -51,7 +52,8 @@ pub enum MeshingError {
 /// The grid over a solid: which corners are inside.
 struct Grid {
     origin: Point3,
-    cell: f64,
+    /// The grid's axes, as long as a cell.
+    axes: Matrix3<f64>,
     /// Corners along each axis: cells and one more.
     corners: [usize; 3],
     inside: Vec<bool>,
@@ -61,17 +63,25 @@ struct Grid {
 
 impl Grid {
     fn new(solid: &dyn Solid, cell: f64, points: usize) -> Result<Self, MeshingError> {
+        // Axes that all lean equally to those of the model: flat faces along the model's axes, which implants have, then get
+        // as many cells for their area as the rest of the surface has in the mean.
+        let turn = Matrix3::new(2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0) / 3.0;
         let (low, high) = solid.bounds();
-        // Off from the bounds by odd fractions, so that no face of the body lies in a plane of corners.
-        let origin = low - Vector3::new(1.37, 1.41, 1.43) * cell;
-        let cells = ((high - origin) / cell).map(|n| n + 1.5);
+        let half = turn.transpose().abs() * (high - low) / 2.0 + Vector3::repeat(1.4 * cell);
+        let origin = nalgebra::center(&low, &high) - turn * half;
+        let cells = half * 2.0 / cell;
         if !(cell > 0.0 && cells.iter().all(|n| *n >= 1.0) && cells.product() < MOST_CORNERS) {
             return Err(MeshingError::Unreachable { points });
         }
         let blocks = cells.map(|n| (n / BLOCK as f64).ceil() as usize);
         let corners = [0, 1, 2].map(|i| blocks[i] * BLOCK + 1);
-        let mut grid =
-            Self { origin, cell, corners, inside: vec![false; corners.iter().product()], blocks: Vec::new() };
+        let mut grid = Self {
+            origin,
+            axes: turn * cell,
+            corners,
+            inside: vec![false; corners.iter().product()],
+            blocks: Vec::new(),
+        };
         // A block of blocks first: most of the box is far from the surface.
         const COARSE: usize = 4;
         let coarse = [0, 1, 2].map(|i| blocks[i].div_ceil(COARSE));
@@ -88,7 +98,7 @@ impl Grid {
     }
 
     fn corner(&self, at: [usize; 3]) -> Point3 {
-        self.origin + Vector3::new(at[0] as f64, at[1] as f64, at[2] as f64) * self.cell
+        self.origin + self.axes * Vector3::new(at[0] as f64, at[1] as f64, at[2] as f64)
     }
 
     fn index(&self, at: [usize; 3]) -> usize {
@@ -97,9 +107,9 @@ impl Grid {
 
     /// The solid's value in the middle of a cube of `side` cells, none if the surface may pass the cube.
     fn middle_value(&self, solid: &dyn Solid, first: [usize; 3], side: usize) -> Option<f64> {
-        let half = side as f64 * self.cell / 2.0;
-        let value = solid.value(&(self.corner(first) + Vector3::repeat(half)));
-        (value.abs() > half * 3.0_f64.sqrt()).then_some(value)
+        let to_middle = self.axes * Vector3::repeat(side as f64 / 2.0);
+        let value = solid.value(&(self.corner(first) + to_middle));
+        (value.abs() > to_middle.norm()).then_some(value)
     }
 
     /// Marks the corners of a block; `known` is the value of a cube around it that the surface does not pass.

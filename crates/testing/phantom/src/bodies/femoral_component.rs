@@ -17,12 +17,18 @@ const DISTAL_RADIUS: f64 = 37.0;
 /// Where along y the posterior arc passes into the distal one.
 const JUNCTION: f64 = -9.0;
 
-/// The condyles' profile seen from the side (the J-curve): an arc of the radius `posterior`, from the lowest point on a
-/// larger one, and from its foremost point straight up.
+/// The condyles' profile seen from the side (the J-curve): an arc of the radius `posterior`, from the lowest point forward
+/// a larger one, and from its foremost point straight up; behind it goes straight up too. It is the line that the
+/// smaller circle's centre runs along, widened by that circle's radius, so it is exact outside and some way inside.
 fn profile(y: f64, z: f64, posterior: f64) -> f64 {
-    let behind = hypotenuse(y - JUNCTION, z - (DISTAL + posterior)) - posterior;
-    let before = hypotenuse(y - JUNCTION, (z - (DISTAL + DISTAL_RADIUS)).min(0.0)) - DISTAL_RADIUS;
-    behind.min(before.max(JUNCTION - y))
+    let (ahead, centre) = (y - JUNCTION, DISTAL + posterior);
+    let from_line = if ahead < 0.0 {
+        hypotenuse(ahead, (centre - z).max(0.0))
+    } else {
+        let arc = hypotenuse(ahead, (z - DISTAL - DISTAL_RADIUS).min(0.0)) - (DISTAL_RADIUS - posterior);
+        arc.max(-ahead)
+    };
+    from_line - posterior
 }
 
 /// A condyle: the profile, barrel-shaped from side to side about the plane `x`.
@@ -51,10 +57,10 @@ impl Solid for FemoralComponent {
         // The flange narrows upwards; its upper end rises to the lateral side.
         let sides = half_space(&Point3::new(p.x.abs(), p.y, p.z), [34.0, 0.0, -6.0], [1.0, 0.0, 0.22])
             .max(p.x.abs() - 34.0);
-        let flange_top = half_space(p, [0.0, 0.0, 27.0], [-0.12, 0.0, 1.0]);
-        let posterior_top = half_space(p, [0.0, -26.0, 7.0], [0.0, -0.25, 1.0]);
-        let top = posterior_top.min(flange_top.max(4.0 - p.y));
-        let outer = intersection(intersection(condyles, sides, EDGE), top, EDGE);
+        let outer = intersection(condyles, sides, EDGE);
+        let flange_top = half_space(p, [0.0, 0.0, 27.0], [-0.12, 0.0, 1.0]).max(4.0 - p.y);
+        let posterior_top = half_space(p, [0.0, -26.0, 8.0], [0.0, -0.5, 1.0]);
+        let outer = intersection(outer, posterior_top, 10.0).min(intersection(outer, flange_top, EDGE));
         let shell = difference(outer, bone_cuts(p), EDGE);
         // Two walls stand on the distal part and bound the slot for the insert's post; a cam joins the condyles behind.
         let side = intersection((p.y + 4.0).abs() - 14.0, (p.z + 10.0).abs() - 15.0, 4.0);
@@ -65,6 +71,6 @@ impl Solid for FemoralComponent {
     }
 
     fn bounds(&self) -> (Point3, Point3) {
-        (Point3::new(-35.0, -32.0, -27.5), Point3::new(35.0, 29.5, 32.5))
+        (Point3::new(-35.0, -32.0, -27.5), Point3::new(35.0, 29.5, 34.0))
     }
 }

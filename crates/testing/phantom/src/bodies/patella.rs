@@ -13,8 +13,8 @@ pub struct Patella;
 impl Solid for Patella {
     fn value(&self, p: &Point3) -> f64 {
         let round = ellipsoid(p, [0.0, -1.0, 3.0], [23.0, 13.0, 20.0]);
-        let point = round_cone(p, ([0.0, 1.0, -4.0], 9.0), ([1.0, 2.0, -19.0], 4.5));
-        let whole = union(round, point, 6.0);
+        let point = round_cone(p, ([0.0, 0.0, -3.0], 11.0), ([1.0, 1.5, -17.5], 5.5));
+        let whole = union(round, point, 10.0);
         // The lateral facet is the wider and flatter one.
         let lateral = half_space(p, [-3.0, -12.0, 0.0], [0.42, -1.0, 0.05]);
         let medial = half_space(p, [-3.0, -12.0, 0.0], [-0.6, -1.0, 0.05]);

@@ -3,7 +3,7 @@
 use biplane_geometry::Point3;
 
 use crate::Solid;
-use crate::shapes::{difference, half_space, hypotenuse, intersection, plate, round_cone, union};
+use crate::shapes::{difference, ellipsoid, half_space, hypotenuse, intersection, plate, round_cone, union};
 
 /// A plate of about 74 x 48 x 5 mm on a stem of 40 mm. It is nearly its own mirror image: the medial side is larger by
 /// 1.5 mm.
@@ -20,17 +20,18 @@ fn fin(p: &Point3) -> f64 {
     let along = x * cosine - p.y * sine;
     let across = x * sine + p.y * cosine;
     let slope = half_space(&Point3::new(along, 0.0, p.z), [21.0, 0.0, 8.0], [1.0, 0.0, -0.9]);
-    let blade = intersection(slope, (p.z - PLATE).max(-along - 4.0), 2.0);
+    let blade = intersection(slope, (p.z - PLATE + 1.0).max(-along - 4.0), 2.0);
     plate(blade, across, 1.75, 1.2)
 }
 
 impl Solid for TibialTray {
     fn value(&self, p: &Point3) -> f64 {
-        let lobes =
-            union(hypotenuse(p.x + 13.5, p.y - 0.5) - 24.25, hypotenuse(p.x - 13.5, p.y - 0.5) - 22.75, 16.0);
-        let kidney = difference(lobes, hypotenuse(p.x, p.y + 29.5) - 9.5, 10.0);
+        let flat = Point3::new(p.x, p.y, 0.0);
+        let lobes = round_cone(&flat, ([-13.0, 0.5, 0.0], 24.5), ([13.5, 0.5, 0.0], 23.0));
+        let front = ellipsoid(&flat, [0.0, 2.0, 0.0], [30.0, 24.5, 30.0]);
+        let kidney = difference(union(lobes, front, 4.0), hypotenuse(p.x, p.y + 30.5) - 9.5, 10.0);
         let base = plate(kidney, p.z - PLATE, 2.5, 1.2);
-        let stem = round_cone(p, ([0.0, 1.0, 8.0], 8.0), ([0.0, 1.0, -20.5], 6.0));
+        let stem = round_cone(p, ([0.0, 1.0, 18.0], 8.4), ([0.0, 1.0, -20.5], 6.0)).max(p.z - PLATE + 1.0);
         union(base, union(stem, fin(p), 3.0), 3.0)
     }
 
