@@ -362,7 +362,17 @@ impl Check {
 fn parameter(text: &str, table: &str, key: Option<&str>, message: &str) -> Problem {
     let span = || {
         let tables = toml::de::DeTable::parse(text).ok()?;
-        Some(tables.get_ref().get(table)?.get_ref().as_table()?.get(key?)?.span())
+        let (mut place, mut at) = (None, tables.get_ref());
+        // A key of a table within the table has its name and a dot before it.
+        for name in std::iter::once(table).chain(key?.split('.')) {
+            let inner = at.get(name)?;
+            place = Some(inner.span());
+            match inner.get_ref().as_table() {
+                Some(table) => at = table,
+                None => break,
+            }
+        }
+        place
     };
     Problem { span: span(), ..Problem::at(0..0, message) }
 }

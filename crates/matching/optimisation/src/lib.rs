@@ -12,16 +12,23 @@
 //!
 //! **Starts.** The start given; where its match does not come out good, further ones around it, drawn from a seed.
 //!
+//! That is `method = "rim"`; `method = "bingham2006"` is the thesis's own, to compare with: grid outline, mean distance and
+//! bounded BFGS ([`descend`]).
+//!
 //! **Guaranteed:** a result depends on inputs and parameters alone. **Not guaranteed:** that the best basin was found; the
 //! verdict says what speaks against a pose, from the fit alone.
 
+mod bingham;
 mod field;
 mod judge;
 mod refine;
 mod stage;
 mod starts;
 
+pub use bingham::{
+    BinghamParams, BinghamView, Contour, Descent, best, descend, match_bingham, own_contour, spread,
+};
 pub use field::EdgeField;
 pub use judge::{Limits, judge};
 pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};
-pub use stage::{Contrast, MatchBody, MatchError, MatchInputs, MatchParams, match_body};
+pub use stage::{Contrast, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_body};

@@ -5,7 +5,7 @@ use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// A standard normal number (Box and Muller 1958).
-fn normal(random: &mut Xoshiro256PlusPlus) -> f64 {
+pub(crate) fn normal(random: &mut Xoshiro256PlusPlus) -> f64 {
     let u: f64 = 1.0 - random.random::<f64>();
     let v: f64 = random.random();
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()

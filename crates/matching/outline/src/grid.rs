@@ -23,7 +23,7 @@ use biplane_geometry::{Point2, Point3, Pose, Vector2};
 /// Cells along the longer side at most.
 const MOST_ALONG: f64 = 4096.0;
 /// Cells along the shorter side at most: above, `grid` is taken as this.
-const MOST_ACROSS: u32 = 1024;
+const MOST_ACROSS: usize = 1024;
 /// The eight neighbours in the order in which they are searched: clockwise where x is to the right and y is down.
 const NEIGHBOURS: [(isize, isize); 8] =
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
@@ -75,7 +75,7 @@ impl GridOutline {
 
     /// The outline of `points` (model, mm) at `pose` in `view`, ideal px. Empty if there are none, if one of them lies at or
     /// behind the source, or if all appear at one pixel.
-    pub fn trace(&mut self, points: &[Point3], pose: &Pose, view: &Fluoroscope, grid: u32) -> &[Point2] {
+    pub fn trace(&mut self, points: &[Point3], pose: &Pose, view: &Fluoroscope, grid: usize) -> &[Point2] {
         // w (x, y, 1) = M (R m + t - source): one matrix and one vector for all points.
         let turned = view.matrix() * pose.rotation().to_rotation_matrix().matrix();
         let shift = view.matrix() * (pose.translation() - view.source().coords);
@@ -98,9 +98,9 @@ impl GridOutline {
 
     /// The outline of points in the plane, as `bound.m` has them. Empty if there are none, if all are the same, or if one
     /// is not a finite number.
-    pub fn bound(&mut self, pixels: &[Point2], grid: u32) -> &[Point2] {
+    pub fn bound(&mut self, pixels: &[Point2], grid: usize) -> &[Point2] {
         self.points.clear();
-        if let Some(start) = self.fill(pixels, f64::from(grid.clamp(1, MOST_ACROSS))) {
+        if let Some(start) = self.fill(pixels, grid.clamp(1, MOST_ACROSS) as f64) {
             self.follow(start);
             self.choose(pixels);
         }
@@ -223,7 +223,7 @@ mod tests {
     fn cloud(points: &[(f64, f64)]) -> Vec<Point2> {
         points.iter().map(|p| Point2::new(p.0, p.1)).collect()
     }
-    fn outline(points: &[(f64, f64)], grid: u32) -> Vec<(f64, f64)> {
+    fn outline(points: &[(f64, f64)], grid: usize) -> Vec<(f64, f64)> {
         GridOutline::new().bound(&cloud(points), grid).iter().map(|p| (p.x, p.y)).collect()
     }
 
