@@ -159,8 +159,8 @@ pub struct Plate {
     pub thickness_mm: f64,
     /// Its attenuation, 1/mm.
     pub attenuation_per_mm: f64,
-    /// Radius of the round plate, mm.
-    pub radius_mm: f64,
+    /// Half the side of the square plate, mm; usually beyond the picture.
+    pub half_side_mm: f64,
     /// What its spots are.
     pub kind: SpotKind,
     /// Its spots as a laboratory knows them; on a perforated plate they do not overlap.
@@ -184,7 +184,7 @@ impl Plate {
         Self {
             thickness_mm: 0.8,
             attenuation_per_mm: Material::Steel.attenuation_per_mm(),
-            radius_mm: 170.0,
+            half_side_mm: 170.0,
             kind: SpotKind::Hole,
             spots,
             missing: Vec::new(),
@@ -210,7 +210,7 @@ impl Plate {
     pub fn absorbers(&self) -> Result<Vec<Absorber>, MeshError> {
         let half = self.thickness_mm / 2.0;
         let mut solid = Prisms::default();
-        solid.add_cylinder(&Point2::origin(), self.radius_mm, -half, half);
+        solid.add_sheet(self.half_side_mm, -half, half);
         let (mut hollow, mut burrs) = (Prisms::default(), Prisms::default());
         let mut absorbers = Vec::new();
         for spot in self.present().map(|(_, spot)| spot) {

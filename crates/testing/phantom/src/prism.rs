@@ -1,4 +1,4 @@
-//! Closed meshes of straight prisms: holes, tubes and scratches for X-ray pictures.
+//! Closed meshes of straight prisms: sheets, holes and scratches for X-ray pictures.
 
 use biplane_geometry::{Mesh, MeshError, Point2, Point3};
 
@@ -6,6 +6,8 @@ use crate::shadow::circle;
 
 /// Sides of a polygon that stands for a circle.
 const SIDES: usize = 64;
+/// Squares along the side of a sheet.
+const SQUARES: u32 = 32;
 
 /// Prisms along z, one beside another, as one mesh.
 #[derive(Default)]
@@ -39,6 +41,29 @@ impl Prisms {
         self.add(&polygon, low, high);
     }
 
+    /// Adds a square sheet about the origin, its faces of small squares: long thin triangles are slow to draw bent.
+    pub fn add_sheet(&mut self, half_side: f64, low: f64, high: f64) {
+        let (start, n) = (self.vertices.len() as u32, SQUARES + 1);
+        let place = |i: u32| half_side * (2.0 * f64::from(i) / f64::from(SQUARES) - 1.0);
+        for z in [low, high] {
+            for j in 0..n {
+                self.vertices.extend((0..n).map(|i| Point3::new(place(i), place(j), z)));
+            }
+        }
+        let at = |i: u32, j: u32, face: u32| start + (face * n + j) * n + i;
+        let mut add = |[a, b, c, d]: [u32; 4]| self.triangles.extend([[a, b, c], [a, c, d]]);
+        for k in 0..SQUARES {
+            for i in 0..SQUARES {
+                add([at(i, k, 1), at(i + 1, k, 1), at(i + 1, k + 1, 1), at(i, k + 1, 1)]);
+                add([at(i, k, 0), at(i, k + 1, 0), at(i + 1, k + 1, 0), at(i + 1, k, 0)]);
+            }
+            add([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 0, 1), at(k, 0, 1)]);
+            add([at(k + 1, SQUARES, 0), at(k, SQUARES, 0), at(k, SQUARES, 1), at(k + 1, SQUARES, 1)]);
+            add([at(0, k + 1, 0), at(0, k, 0), at(0, k, 1), at(0, k + 1, 1)]);
+            add([at(SQUARES, k, 0), at(SQUARES, k + 1, 0), at(SQUARES, k + 1, 1), at(SQUARES, k, 1)]);
+        }
+    }
+
     /// The mesh; `None` where nothing was added.
     ///
     /// # Errors
@@ -62,11 +87,12 @@ mod tests {
         prisms.add_cylinder(&Point2::new(3.0, -2.0), 1.25, -0.4, 0.4);
         let square = [[9.0, 0.0], [11.0, 0.0], [11.0, 3.0], [9.0, 3.0]].map(Point2::from);
         prisms.add(&square, 1.0, 2.0);
+        prisms.add_sheet(30.0, 5.0, 5.5);
         let mesh = prisms.mesh().unwrap().unwrap();
         let topology = mesh.topology();
-        assert_eq!((topology.open_edges, topology.inconsistent_edges, topology.bodies), (0, 0, 2));
+        assert_eq!((topology.open_edges, topology.inconsistent_edges, topology.bodies), (0, 0, 3));
         // The polygon has the circle's area.
-        let expected = std::f64::consts::PI * 1.25 * 1.25 * 0.8 + 6.0;
+        let expected = std::f64::consts::PI * 1.25 * 1.25 * 0.8 + 6.0 + 60.0 * 60.0 * 0.5;
         assert_relative_eq!(mesh.signed_volume(), expected, epsilon = 1e-9);
         assert_eq!(Prisms::default().mesh(), Ok(None));
     }
