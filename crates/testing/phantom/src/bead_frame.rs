@@ -40,7 +40,7 @@ pub struct Tube {
 /// What a frame is to be like.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeadLayout {
-    /// Number of beads, at least 8; the last two are larger.
+    /// Number of beads, 8 to 1000; the last two are larger.
     pub count: usize,
     /// Height of the frame, mm; the beads are on rings of a third of it in radius.
     pub height_mm: f64,
@@ -77,9 +77,9 @@ impl BeadLayout {
 /// Why there is no frame of a layout.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BeadFrameError {
-    /// Fewer beads than a frame needs.
-    #[error("{count} beads; a frame needs at least 8 to be spread over space")]
-    TooFew {
+    /// Fewer beads than are spread over space, or more than a frame holds.
+    #[error("{count} beads; a frame has 8 to 1000")]
+    Count {
         /// As given.
         count: usize,
     },
@@ -111,8 +111,8 @@ impl BeadFrame {
     /// A layout that is none, or whose shadows do not fit into the views.
     pub fn drawn(layout: &BeadLayout, views: &[TrueFluoroscope], seed: u64) -> Result<Self, BeadFrameError> {
         let BeadLayout { count, height_mm, least_gap_px, .. } = *layout;
-        if count < 8 {
-            return Err(BeadFrameError::TooFew { count });
+        if !(8..=1000).contains(&count) {
+            return Err(BeadFrameError::Count { count });
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
         let beads = (0..FRAMES)
@@ -181,7 +181,8 @@ impl BeadFrame {
             .collect()
     }
 
-    /// The list that a laboratory has of its beads: `bead,x_mm,y_mm,z_mm,radius_mm`, numbered from 1.
+    /// The list that a laboratory has of its beads: `bead,x_mm,y_mm,z_mm,radius_mm`, numbered from 1; places to whole
+    /// micrometres, as [`BeadFrame::drawn`] makes them.
     pub fn csv(&self) -> String {
         let mut text = String::from("bead,x_mm,y_mm,z_mm,radius_mm\n");
         for (index, Ball { centre, radius }) in self.beads.iter().enumerate() {
@@ -336,8 +337,10 @@ mod tests {
 
     #[test]
     fn layouts_that_cannot_be_are_refused() {
-        let few = BeadLayout { count: 7, ..BeadLayout::large() };
-        assert_eq!(BeadFrame::drawn(&few, &[], 1), Err(BeadFrameError::TooFew { count: 7 }));
+        for count in [7, usize::MAX] {
+            let layout = BeadLayout { count, ..BeadLayout::large() };
+            assert_eq!(BeadFrame::drawn(&layout, &[], 1), Err(BeadFrameError::Count { count }));
+        }
         let crowded = BeadLayout { least_gap_px: 200.0, ..BeadLayout::large() };
         let refused = BeadFrame::drawn(&crowded, &biplane(90.0), 1);
         assert!(matches!(refused, Err(BeadFrameError::NoRoom { .. })), "{refused:?}");
