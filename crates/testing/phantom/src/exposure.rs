@@ -22,7 +22,8 @@ pub struct Exposure {
     pub samples_per_px: usize,
     /// How long the picture is exposed, s: how far moving bodies smear.
     pub time_s: f64,
-    /// Moments of the exposure that are drawn for bodies that move; a smear of many px needs about one a px.
+    /// Moments of the exposure that are drawn where bodies move, rounded up to a power of two. They share the rays of a
+    /// pixel, so there are at most half as many; a smear of many px needs about one a px.
     pub moments: usize,
     /// How the intensifier bends the picture.
     pub distortion: Option<IntensifierDistortion>,

@@ -1,5 +1,8 @@
 //! X-ray pictures against what geometry and statistics say they must be.
 
+// Clippy lets `#[test]` functions unwrap, but not what they call.
+#![allow(clippy::unwrap_used)]
+
 use std::sync::Arc;
 
 use biplane_artifact::Frame;
@@ -395,9 +398,12 @@ fn motion_smears_both_ways_alike() {
         (0..values.len()).map(|i| (i % 256) as f64 * absorbed(i)).sum::<f64>() / total
     };
     // 5 mm on the way are 8 px: the smear is there, and its middle is where the ball is in the middle of the exposure.
-    assert!(right.iter().zip(&left).all(|(a, b)| (a - b).abs() < 1e-5));
-    assert!(right.iter().zip(&still).any(|(a, b)| (a - b).abs() > 0.2));
-    assert!((centre_x(&right) - centre_x(&still)).abs() < 0.01);
+    let largest = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(largest(&right, &still) > 0.2);
+    // Each moment has other rays of a pixel, so to and fro differ by a part of what one of eight moments counts.
+    assert!(largest(&right, &left) < 0.05, "{}", largest(&right, &left));
+    assert!((centre_x(&right) - centre_x(&still)).abs() < 0.01, "{}", centre_x(&right) - centre_x(&still));
+    assert!((centre_x(&left) - centre_x(&still)).abs() < 0.01, "{}", centre_x(&left) - centre_x(&still));
 }
 
 #[test]
