@@ -57,10 +57,10 @@ pub struct BinghamParams {
     pub outline_points: usize,
     /// Step of the finite differences at first, mm and degrees. The thesis does not say.
     #[schemars(range(min = 0.000_001, max = 10.0))]
-    pub largest_difference: f64,
+    pub first_difference_mm_deg: f64,
     /// Step of the finite differences at the end, mm and degrees. The thesis does not say.
     #[schemars(range(min = 0.000_001, max = 10.0))]
-    pub smallest_difference: f64,
+    pub last_difference_mm_deg: f64,
     /// How far from its start a search may go in x, y and z each, mm. The thesis does not say.
     #[schemars(range(min = 0.001, max = 1000.0))]
     pub bound_mm: f64,
@@ -94,8 +94,8 @@ impl Default for BinghamParams {
         Self {
             grid: 30,
             outline_points: 50,
-            largest_difference: 1.0,
-            smallest_difference: 0.05,
+            first_difference_mm_deg: 1.0,
+            last_difference_mm_deg: 0.05,
             bound_mm: 40.0,
             bound_deg: 40.0,
             tolerance: 0.0005,
@@ -116,8 +116,8 @@ impl BinghamParams {
         let Self {
             grid,
             outline_points,
-            largest_difference,
-            smallest_difference,
+            first_difference_mm_deg,
+            last_difference_mm_deg,
             bound_mm,
             bound_deg,
             tolerance,
@@ -139,10 +139,16 @@ impl BinghamParams {
         let (least, step) = (1e-6, "0.000001 to 10 (mm and degrees)");
         count("bingham2006.grid", grid, 2.0, 1e3, "2 to 1000")?;
         count("bingham2006.outline_points", outline_points, 2.0, 1e5, "2 to 100000")?;
-        within("bingham2006.largest_difference", largest_difference, least, 10.0, step)?;
-        within("bingham2006.smallest_difference", smallest_difference, least, 10.0, step)?;
-        let expected = "at most largest_difference";
-        within("bingham2006.smallest_difference", smallest_difference, least, largest_difference, expected)?;
+        within("bingham2006.first_difference_mm_deg", first_difference_mm_deg, least, 10.0, step)?;
+        within("bingham2006.last_difference_mm_deg", last_difference_mm_deg, least, 10.0, step)?;
+        let expected = "at most first_difference_mm_deg";
+        within(
+            "bingham2006.last_difference_mm_deg",
+            last_difference_mm_deg,
+            least,
+            first_difference_mm_deg,
+            expected,
+        )?;
         within("bingham2006.bound_mm", bound_mm, 0.001, 1e3, "0.001 to 1000 mm")?;
         within("bingham2006.bound_deg", bound_deg, 0.001, 180.0, "0.001 to 180 degrees")?;
         within("bingham2006.tolerance", tolerance, 1e-9, 1.0, "0.000000001 to 1 (mm and degrees)")?;
@@ -214,8 +220,8 @@ pub fn descend(
     let search = bfgs::Search {
         low: from - bound,
         high: from + bound,
-        largest_difference: params.largest_difference,
-        smallest_difference: params.smallest_difference,
+        first_difference: params.first_difference_mm_deg,
+        last_difference: params.last_difference_mm_deg,
         tolerance: params.tolerance,
         calls: params.calls,
     };

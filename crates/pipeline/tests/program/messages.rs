@@ -76,6 +76,16 @@ fn faults_of_the_file_point_at_their_place() {
         "contrast = \"drak\"",
         &["pipeline.toml:21:12", "`drak` is none", "did you mean `dark`?"],
     );
+    refuses(
+        "search_px = 20.0",
+        "[match.bingham2006]\ngird = 40",
+        &["pipeline.toml:22:1", "unknown key `gird`", "did you mean `grid`?"],
+    );
+    refuses(
+        "search_px = 20.0",
+        "[match.bingham2006]\ncalls = 0",
+        &["pipeline.toml:22:9", "bingham2006.calls = 0, expected 1 to 1000000"],
+    );
     refuses("[study]", "[study", &["pipeline.toml:1:7"]);
 }
 

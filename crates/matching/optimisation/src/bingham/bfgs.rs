@@ -23,9 +23,9 @@ pub(super) struct Search {
     pub low: Vector6<f64>,
     pub high: Vector6<f64>,
     /// Step of the finite differences at first.
-    pub largest_difference: f64,
+    pub first_difference: f64,
     /// And at the end.
-    pub smallest_difference: f64,
+    pub last_difference: f64,
     /// It ends when every variable changes by less.
     pub tolerance: f64,
     /// Calls of the function at most.
@@ -52,7 +52,7 @@ pub(super) fn minimise(
         function,
         search,
         calls: 0,
-        difference: search.largest_difference.max(search.smallest_difference),
+        difference: search.first_difference.max(search.last_difference),
         at: search.within(start),
         value: f64::INFINITY,
     };
@@ -121,8 +121,8 @@ impl<F: FnMut(&Vector6<f64>) -> f64> Run<'_, F> {
                 let next = self.gradient()?;
                 hessian = Some(updated(hessian, &(self.at - before), &(next - gradient)));
                 gradient = next;
-            } else if self.difference > self.search.smallest_difference {
-                self.difference = (self.difference * SHORTEN).max(self.search.smallest_difference);
+            } else if self.difference > self.search.last_difference {
+                self.difference = (self.difference * SHORTEN).max(self.search.last_difference);
                 gradient = self.gradient()?;
                 hessian = None;
             } else {
@@ -176,8 +176,8 @@ mod tests {
         Search {
             low: Vector6::repeat(-5.0),
             high: Vector6::repeat(5.0),
-            largest_difference: 0.1,
-            smallest_difference: 0.001,
+            first_difference: 0.1,
+            last_difference: 0.001,
             tolerance: 0.0005,
             calls,
         }
