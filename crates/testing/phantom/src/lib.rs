@@ -23,7 +23,7 @@ mod prism;
 mod raster;
 mod scene;
 mod shadow;
-pub mod shapes;
+mod shapes;
 mod slice_grid;
 mod solid;
 mod transmission;

@@ -41,9 +41,11 @@ pub enum MeshingError {
     },
     /// A vertex did not get to the surface.
     #[error(
-        "a vertex stays {value} mm from the surface of the body: its function is not smooth enough there"
+        "a vertex at {at:?} mm stays {value} mm from the surface: the body's function is not smooth enough there"
     )]
     OffSurface {
+        /// Where, in the model's frame, mm.
+        at: [f64; 3],
         /// The solid's value there, mm.
         value: f64,
     },
@@ -239,7 +241,7 @@ pub fn mesh(solid: &dyn Solid, points: usize) -> Result<Mesh, MeshingError> {
         let cells = grid.cells();
         let ratio = cells.len() as f64 / wanted;
         if (ratio - 1.0).abs() < NUMBER_TOLERANCE * 0.9 {
-            return net(solid, &grid, &cells);
+            return net(solid, &grid, &cells, points);
         }
         cell *= if cells.is_empty() { 0.5 } else { ratio.sqrt().clamp(0.25, 4.0) };
     }
@@ -247,7 +249,7 @@ pub fn mesh(solid: &dyn Solid, points: usize) -> Result<Mesh, MeshingError> {
 }
 
 /// The surface net over the cells: four-sided faces, one for each grid edge from inside to outside, made triangles.
-fn net(solid: &dyn Solid, grid: &Grid, cells: &[[usize; 3]]) -> Result<Mesh, MeshingError> {
+fn net(solid: &dyn Solid, grid: &Grid, cells: &[[usize; 3]], points: usize) -> Result<Mesh, MeshingError> {
     let mut vertices: Vec<Point3> = cells.iter().map(|cell| start(grid, *cell)).collect();
     let number = |cell: Option<[usize; 3]>| {
         cell.and_then(|c| cells.binary_search_by_key(&grid.index(c), |c| grid.index(*c)).ok())
@@ -278,11 +280,11 @@ fn net(solid: &dyn Solid, grid: &Grid, cells: &[[usize; 3]]) -> Result<Mesh, Mes
         let value = finish(solid, vertex);
         let there = value.abs() <= ON_SURFACE_MM;
         if !there {
-            return Err(MeshingError::OffSurface { value });
+            return Err(MeshingError::OffSurface { at: (*vertex).into(), value });
         }
     }
     let triangles = faces.iter().flat_map(|f| split(&vertices, f)).collect();
-    Mesh::new(vertices, triangles).map_err(|_| MeshingError::OffSurface { value: f64::NAN })
+    Mesh::new(vertices, triangles).map_err(|_| MeshingError::Unreachable { points })
 }
 
 /// Where a cell's vertex starts: the mean of the middles of its edges from inside to outside.

@@ -70,12 +70,6 @@ pub fn ellipsoid(p: &Point3, centre: [f64; 3], radii: [f64; 3]) -> f64 {
     (scaled.norm() - 1.0) * radii[0].min(radii[1]).min(radii[2])
 }
 
-/// A box whose edges are rounded by `radius`, `half` its half sizes with the rounding.
-pub fn rounded_box(p: &Point3, centre: [f64; 3], half: [f64; 3], radius: f64) -> f64 {
-    let q = (p - Point3::from(centre)).abs() - Vector3::from(half).add_scalar(-radius);
-    q.sup(&Vector3::zeros()).norm() + q.max().min(0.0) - radius
-}
-
 /// All that lies against `normal` (of any length) of the plane through `on`.
 pub fn half_space(p: &Point3, on: [f64; 3], normal: [f64; 3]) -> f64 {
     let n = Vector3::from(normal);
@@ -87,4 +81,56 @@ pub fn half_space(p: &Point3, on: [f64; 3], normal: [f64; 3]) -> f64 {
 pub fn plate(outline: f64, height: f64, half: f64, radius: f64) -> f64 {
     let (a, b) = (outline + radius, height.abs() - half + radius);
     hypotenuse(a.max(0.0), b.max(0.0)) + a.max(b).min(0.0) - radius
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn at(x: f64, y: f64, z: f64) -> Point3 {
+        Point3::new(x, y, z)
+    }
+
+    #[test]
+    fn distances_are_those_of_geometry() {
+        assert_eq!(ball(&at(4.0, 6.0, 0.0), [1.0, 2.0, 0.0], 2.0), 3.0);
+        assert_eq!(capsule(&at(5.0, 3.0, 0.0), [0.0; 3], [9.0, 0.0, 0.0], 1.0), 2.0);
+        assert_eq!(capsule(&at(12.0, 4.0, 0.0), [0.0; 3], [9.0, 0.0, 0.0], 1.0), 4.0);
+        assert_eq!(half_space(&at(7.0, 1.0, 3.0), [5.0, 0.0, 0.0], [2.0, 0.0, 0.0]), 2.0);
+        // A disc of radius 5 and half height 2: above its middle, beside it, out from its rounded rim, within.
+        let disc = |x: f64, z: f64| plate(hypotenuse(x, 0.0) - 5.0, z, 2.0, 1.0);
+        assert_eq!([disc(0.0, 6.0), disc(9.0, 0.0), disc(7.0, 5.0), disc(4.5, 0.0)], [4.0, 4.0, 4.0, -0.5]);
+        let egg = |x: f64, y: f64| ellipsoid(&at(x, y, 0.0), [1.0, 0.0, 0.0], [3.0, 2.0, 4.0]);
+        assert_eq!([egg(4.0, 0.0), egg(1.0, 2.0), egg(1.0, 0.0), egg(7.0, 0.0)], [0.0, 0.0, -2.0, 2.0]);
+    }
+
+    #[test]
+    fn a_round_cone_touches_both_of_its_balls() {
+        // Balls of 3 and 1, 4 apart: the flank leans by the sine (3 - 1) / 4, so it touches the first one at 60 degrees.
+        let cone = |x: f64, y: f64| round_cone(&at(x, y, 0.0), ([0.0; 3], 3.0), ([4.0, 0.0, 0.0], 1.0));
+        let (sine, cosine) = 30.0_f64.to_radians().sin_cos();
+        let flank =
+            |s: f64, out: f64| (4.0 * s + (3.0 - 2.0 * s + out) * sine, (3.0 - 2.0 * s + out) * cosine);
+        for (s, out) in [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.3, 2.0), (0.6, -0.5)] {
+            let (x, y) = flank(s, out);
+            assert_relative_eq!(cone(x, y), out, epsilon = 1e-12);
+        }
+        assert_relative_eq!(cone(-5.0, 0.0), 2.0);
+        assert_relative_eq!(cone(7.0, 0.0), 2.0);
+    }
+
+    #[test]
+    fn blends_begin_at_their_width_and_keep_to_one_side() {
+        assert_eq!(union(1.0, 5.0, 4.0), 1.0);
+        assert_relative_eq!(union(0.0, 0.0, 6.0), -1.0);
+        assert_relative_eq!(intersection(0.0, 0.0, 6.0), 1.0);
+        assert_relative_eq!(difference(-1.0, -2.0, 1e-3), 2.0);
+        // A step of the arguments changes the result by no more than the larger of the two steps.
+        for k in 0..1000 {
+            let (a, b) = (3.0 * f64::from(k).sin(), 3.0 * (1.7 * f64::from(k)).cos());
+            let change = union(a + 1e-3, b - 1e-3, 2.0) - union(a, b, 2.0);
+            assert!(change.abs() <= 1e-3 * (1.0 + 1e-9) && union(a, b, 2.0) <= a.min(b));
+        }
+    }
 }

@@ -33,7 +33,7 @@ fn profile(y: f64, z: f64, posterior: f64) -> f64 {
 
 /// A condyle: the profile, barrel-shaped from side to side about the plane `x`.
 fn condyle(p: &Point3, x: f64, posterior: f64) -> f64 {
-    const BARREL: f64 = 30.0;
+    const BARREL: f64 = 32.0;
     hypotenuse((profile(p.y, p.z, posterior) + BARREL).max(0.0), p.x - x) - BARREL
 }
 
@@ -44,22 +44,22 @@ fn bone_cuts(p: &Point3) -> f64 {
         half_space(p, [0.0, -20.5, 0.0], [0.0, -1.0, 0.0]),
         half_space(p, [0.0, -20.5, -9.0], [0.0, -1.0, -1.0]),
         half_space(p, [0.0, 0.0, -17.0], [0.0, 0.0, -1.0]),
-        half_space(p, [0.0, 19.0, -7.5], [0.0, 1.0, -1.0]),
-        half_space(p, [0.0, 19.0, 0.0], [0.0, 1.0, -0.06]),
+        half_space(p, [0.0, 18.0, -7.5], [0.0, 1.0, -1.0]),
+        half_space(p, [0.0, 18.0, 0.0], [0.0, 1.0, -0.04]),
     ];
     planes.into_iter().reduce(|a, b| intersection(a, b, FILLET)).unwrap_or(f64::INFINITY)
 }
 
 impl Solid for FemoralComponent {
     fn value(&self, p: &Point3) -> f64 {
-        const EDGE: f64 = 3.5;
-        let condyles = union(condyle(p, -20.0, 22.0), condyle(p, 20.0, 20.0), 7.0);
+        const EDGE: f64 = 4.5;
+        let condyles = union(condyle(p, -20.0, 22.0), condyle(p, 20.0, 20.0), 9.0);
         // The flange narrows upwards; its upper end rises to the lateral side.
-        let sides = half_space(&Point3::new(p.x.abs(), p.y, p.z), [34.0, 0.0, -6.0], [1.0, 0.0, 0.22])
-            .max(p.x.abs() - 34.0);
+        let leaning = half_space(&Point3::new(p.x.abs(), p.y, p.z), [34.0, 0.0, -6.0], [1.0, 0.0, 0.22]);
+        let sides = intersection(leaning, p.x.abs() - 34.0, 6.0);
         let outer = intersection(condyles, sides, EDGE);
         let flange_top = half_space(p, [0.0, 0.0, 27.0], [-0.12, 0.0, 1.0]).max(4.0 - p.y);
-        let posterior_top = half_space(p, [0.0, -26.0, 8.0], [0.0, -0.5, 1.0]);
+        let posterior_top = half_space(p, [0.0, -26.0, 9.0], [0.0, -0.1, 1.0]);
         let outer = intersection(outer, posterior_top, 10.0).min(intersection(outer, flange_top, EDGE));
         let shell = difference(outer, bone_cuts(p), EDGE);
         // Two walls stand on the distal part and bound the slot for the insert's post; a cam joins the condyles behind.

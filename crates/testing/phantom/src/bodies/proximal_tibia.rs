@@ -15,21 +15,26 @@ pub struct ProximalTibia;
 
 impl Solid for ProximalTibia {
     fn value(&self, p: &Point3) -> f64 {
-        let lobes =
-            union(hypotenuse(p.x + 14.0, p.y - 0.5) - 24.0, hypotenuse(p.x - 14.5, p.y + 1.0) - 22.5, 14.0);
-        let kidney = difference(lobes, hypotenuse(p.x - 1.0, p.y + 31.0) - 10.0, 10.0);
-        // The plateau slopes down behind.
-        let plateau = plate(kidney, half_space(p, [0.0, 0.0, 28.0], [0.0, 0.1, 1.0]), 8.0, 5.0);
+        // The plateau slopes down behind by 6 degrees: `along` and `up` turn with it.
+        let (sine, cosine) = (0.1, 0.99_f64.sqrt());
+        let (along, up) = (p.y * cosine - (p.z - 28.0) * sine, p.y * sine + (p.z - 28.0) * cosine);
+        let lobes = union(
+            hypotenuse(p.x + 14.0, along - 0.5) - 24.0,
+            hypotenuse(p.x - 14.5, along + 1.0) - 22.5,
+            14.0,
+        );
+        let kidney = difference(lobes, hypotenuse(p.x - 1.0, along + 31.0) - 10.0, 10.0);
+        let plateau = plate(kidney, up, 8.0, 5.0);
         let medial = round_cone(p, ([-13.5, -0.5, 19.0], 22.0), ([-1.0, -2.0, -20.0], 13.0));
         let lateral = round_cone(p, ([14.5, -1.5, 19.0], 20.5), ([1.0, -2.0, -20.0], 13.0));
         let shaft = round_cone(p, ([0.0, -2.0, 0.0], 15.0), ([-2.0, -4.0, -80.0], 12.0));
         let crest = capsule(p, [2.0, 14.0, -2.0], [0.0, 5.0, -80.0], 5.0);
         let tuberosity = ellipsoid(p, [3.0, 17.0, -3.0], [8.0, 7.0, 15.0]);
-        let eminence = ellipsoid(p, [-4.5, 0.0, 35.0], [4.0, 8.0, 9.0]).min(ellipsoid(
-            p,
-            [5.0, -1.0, 34.5],
-            [4.0, 7.0, 6.5],
-        ));
+        let eminence = union(
+            ellipsoid(p, [-4.5, 0.0, 35.0], [4.0, 8.0, 9.0]),
+            ellipsoid(p, [5.5, -1.0, 34.5], [4.0, 7.0, 8.5]),
+            3.0,
+        );
         let ends = union(union(medial, lateral, 12.0), plateau, 7.0);
         let whole = union(union(ends, union(shaft, crest, 12.0), 10.0), tuberosity, 9.0);
         let topped = union(whole, eminence, 3.0);

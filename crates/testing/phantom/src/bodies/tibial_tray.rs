@@ -36,6 +36,6 @@ impl Solid for TibialTray {
     }
 
     fn bounds(&self) -> (Point3, Point3) {
-        (Point3::new(-39.0, -26.0, -27.5), Point3::new(37.5, 26.0, 17.0))
+        (Point3::new(-38.5, -25.0, -27.5), Point3::new(37.5, 27.5, 17.0))
     }
 }
