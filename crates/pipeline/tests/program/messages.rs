@@ -26,7 +26,7 @@ fn a_misspelt_key_is_shown_with_its_line_and_what_was_meant() {
 21 | serch_px = 20.0
    | ^^^^^^^^ did you mean `search_px`?
    |
-   = help: the keys of this table are `search_px`, ";
+   = help: the keys of this table are `method`, `search_px`, ";
     assert!(said.starts_with(expected), "{said}");
 }
 
