@@ -11,7 +11,7 @@ use biplane_geometry::{Point2, Point3, Pose, Vector3};
 use nalgebra::Matrix2;
 
 use crate::raster::{Camera, Lattice, Projected, Samples, Window, window};
-use crate::{Ball, Exposure, IntensifierDistortion, PosedBody, Scene, Surface, TrueFluoroscope};
+use crate::{Absorber, Ball, Exposure, IntensifierDistortion, PosedBody, Scene, Surface, TrueFluoroscope};
 
 /// Why a picture cannot be made.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -24,6 +24,17 @@ pub enum PictureError {
     OutOfBeam {
         /// The point, mm.
         point: Point3,
+    },
+    /// A mesh has a hole, through which rays would enter that never leave.
+    #[error(
+        "a mesh of {triangles} triangles is not closed: their areas as vectors add up to {open_mm2:.3e} mm^2 instead of \
+         nothing: close it, and wind all triangles the same way"
+    )]
+    Open {
+        /// How many triangles it has.
+        triangles: usize,
+        /// Length of the sum of the triangles' area vectors, mm^2.
+        open_mm2: f64,
     },
     /// A ball holds the source.
     #[error(
@@ -93,7 +104,7 @@ impl Transmission {
     /// Of a scene.
     ///
     /// # Errors
-    /// A body is not in the beam.
+    /// A mesh is not closed, or a body is not in the beam.
     pub fn of_scene(
         scene: &Scene,
         view: &TrueFluoroscope,
@@ -101,6 +112,7 @@ impl Transmission {
     ) -> Result<Self, PictureError> {
         let none = IntensifierDistortion::none(view.size);
         let camera = Camera { view, distortion: exposure.distortion.as_ref().unwrap_or(&none) };
+        scene.bodies.iter().flat_map(|b| &b.absorbers).try_for_each(closed)?;
         let moves = exposure.time_s > 0.0 && scene.bodies.iter().any(PosedBody::moves);
         let parts = Lattice::new(exposure.samples_per_px).parts(if moves { exposure.moments } else { 1 });
 
@@ -157,6 +169,23 @@ impl Transmission {
         }
         Self { size: view.size, values, spot_px_per_mm: 0.0 }
     }
+}
+
+/// Area that may be open for rounding, as a share of the surface.
+const OPEN_SHARE: f64 = 1e-9;
+
+/// The area vectors of a closed surface add up to nothing, whatever its shape.
+fn closed(absorber: &Absorber) -> Result<(), PictureError> {
+    let Surface::Mesh(mesh) = &absorber.surface else { return Ok(()) };
+    let triangles = mesh.triangles().len();
+    let (mut sum, mut area) = (Vector3::zeros(), 0.0);
+    for triangle in 0..triangles {
+        let vector = mesh.area_vector(triangle);
+        sum += vector;
+        area += vector.norm();
+    }
+    let open_mm2 = sum.norm();
+    if open_mm2 > OPEN_SHARE * area { Err(PictureError::Open { triangles, open_mm2 }) } else { Ok(()) }
 }
 
 /// The samples with the bodies as they are at a moment of the exposure.

@@ -173,6 +173,15 @@ fn every_ray_leaves_a_closed_mesh_as_often_as_it_enters() {
 }
 
 #[test]
+fn a_mesh_with_a_hole_is_refused() {
+    let whole = ball_mesh(40.0, 4);
+    let holed = Mesh::new(whole.vertices().to_vec(), whole.triangles()[1..].to_vec()).unwrap();
+    let scene = one(Surface::Mesh(Arc::new(holed)), 0.1, Pose::identity());
+    let found = picture(&scene, &small_view(), &Exposure::ideal(), 0);
+    assert!(matches!(found, Err(PictureError::Open { triangles: 2047, .. })), "{found:?}");
+}
+
+#[test]
 fn a_body_that_is_not_in_the_beam_is_refused() {
     let view = small_view();
     let behind = Pose::new(UnitQuaternion::identity(), Vector3::new(0.0, -530.0, 0.0));
