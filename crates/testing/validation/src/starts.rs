@@ -1,15 +1,8 @@
-//! Matches from many seeded starts around the reference.
+//! Seeded start poses around a known one.
 
-use biplane_artifact::{Match, Verdict};
-use biplane_geometry::{Point3, Pose, PoseError, Twist, Vector3};
-use biplane_optimisation::{Evidence, assess, match_body};
-use nalgebra::{Matrix6, Vector6};
+use biplane_geometry::{Point3, Pose, Twist, Vector3};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
-
-use crate::Scene;
-use crate::scene::Posed;
 
 /// How starts are drawn: exactly this far off, in directions drawn evenly over the sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,35 +17,8 @@ pub struct StartOffset {
     pub seed: u64,
 }
 
-/// One match and its error.
-#[derive(Debug, Clone)]
-pub struct Attempt {
-    /// The frame.
-    pub frame: String,
-    /// Which start.
-    pub start: usize,
-    /// The answer.
-    pub answer: Match,
-    /// Against the reference.
-    pub error: PoseError,
-    /// Rotation vector (rad) and displacement of the centroid (mm) of the answer against the reference, laboratory axes.
-    pub difference: (Vector3, Vector3),
-    /// Mean target registration error over the vertices, mm.
-    pub mean_target_mm: f64,
-    /// Squared error over the stated covariance: 6 on average where the covariance is right.
-    pub normalised_squared: f64,
-    /// Time of the match, s.
-    pub seconds: f64,
-    /// Root mean square residual of the outline at the reference pose, px: the larger view's.
-    pub reference_rms_px: f64,
-}
-
-impl Attempt {
-    /// What the verdict says.
-    pub fn verdict(&self) -> Verdict {
-        self.answer.verdict
-    }
-}
+/// Starts from which pictures are matched: exactly 6 mm and 6 degrees off in random directions.
+pub const STARTS: StartOffset = StartOffset { translation_mm: 6.0, rotation_deg: 6.0, count: 20, seed: 1 };
 
 /// A direction drawn evenly over the sphere.
 fn direction(random: &mut Xoshiro256PlusPlus) -> Vector3 {
@@ -125,46 +91,6 @@ pub fn turned(reference: &Pose, centroid: &Point3) -> Vec<Pose> {
             let axes = reference.rotation() * turn;
             let twist = Twist { translation: Vector3::zeros(), rotation: axes };
             reference.moved(&twist, &reference.transform(centroid))
-        })
-        .collect()
-}
-
-/// Matches every frame of `scene` from the starts that `draw` gives for a reference, the body's centroid and the frame's
-/// place.
-pub fn attempts(scene: &Scene, draw: impl Fn(&Pose, &Point3, usize) -> Vec<Pose> + Sync) -> Vec<Attempt> {
-    let (centroid, params) = (*scene.rim.centroid(), &scene.params);
-    scene
-        .frames
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|(index, posed)| {
-            let Posed { label, reference, views, .. } = posed;
-            draw(reference, &centroid, index).into_iter().enumerate().filter_map(move |(start, from)| {
-                // Nothing cancels here, so every match gives an answer.
-                let begun = std::time::Instant::now();
-                let answer = match_body(&scene.rim, views, &scene.names, &from, params, || false).ok()?;
-                let seconds = begun.elapsed().as_secs_f64();
-                let pose = Pose::from(answer.pose);
-                let assessed = assess(&scene.rim, views, reference, &params.search());
-                let rms = |e: &Evidence| (e.squared / e.matched_px.max(1e-9)).sqrt();
-                let turn = (pose.rotation() * reference.rotation().inverse()).scaled_axis();
-                let moved = pose.transform(&centroid) - reference.transform(&centroid);
-                let error = Vector6::new(moved.x, moved.y, moved.z, turn.x, turn.y, turn.z);
-                let covariance = Matrix6::from_fn(|i, j| answer.covariance[i][j]);
-                Some(Attempt {
-                    frame: label.clone(),
-                    start,
-                    error: pose.error_against(reference, &centroid),
-                    difference: (turn, moved),
-                    normalised_squared: covariance
-                        .try_inverse()
-                        .map_or(f64::NAN, |i| error.dot(&(i * error))),
-                    reference_rms_px: assessed.evidence.iter().map(rms).fold(0.0, f64::max),
-                    mean_target_mm: pose.mean_target_error_mm(reference, scene.mesh.vertices()),
-                    seconds,
-                    answer,
-                })
-            })
         })
         .collect()
 }

@@ -59,12 +59,17 @@ impl Cell {
     }
 
     fn print(&self, decimals: usize) -> String {
+        // Adding zero makes what rounds to -0 a plain 0.
+        let round = |v: f64| {
+            let scale = 10_f64.powi(decimals as i32);
+            (v * scale).round() / scale + 0.0
+        };
         match self {
             Self::Spread(s) => {
-                let Spread { mean, deviation, rms } = s;
+                let [mean, deviation, rms] = [s.mean, s.deviation, s.rms].map(round);
                 format!("{mean:.decimals$} ± {deviation:.decimals$} [{rms:.decimals$}]")
             }
-            Self::Number(v) => format!("{v:.decimals$}"),
+            Self::Number(v) => format!("{:.decimals$}", round(*v)),
             Self::Share(part, whole) => format!("{part} of {whole}"),
             Self::Text(text) => text.clone(),
         }

@@ -1,0 +1,37 @@
+//! The sections of `docs/validation.md`, in its order: what `cargo xtask validate` measures.
+
+mod ideal;
+mod moved;
+mod natural;
+mod spheres;
+mod studies;
+mod views;
+
+use crate::plot::PlotError;
+use crate::{Lab, SceneError, Section};
+
+/// Why a section could not be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum SectionError {
+    /// A scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A plot.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+}
+
+/// A section's name on the command line, and what measures it; `None` where what it needs is not here.
+pub type Measure = fn(&Lab) -> Result<Option<Section>, SectionError>;
+
+/// All of them.
+pub const ALL: &[(&str, Measure)] = &[
+    ("ideal", ideal::measure),
+    ("natural", natural::measure),
+    ("spheres", spheres::measure),
+    ("moved", moved::measure),
+    ("views", views::measure),
+    ("simulated", studies::simulated),
+    ("far", studies::far),
+    ("real", studies::real),
+];
