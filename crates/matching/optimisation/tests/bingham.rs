@@ -285,3 +285,17 @@ fn of_the_curves_those_near_the_outline_that_run_with_it_are_the_bodys() {
     let own = own_contour(&curves, &rim, &view, &truth(), &params);
     assert_eq!(own.0, curves.0[..1]);
 }
+
+#[test]
+fn a_run_that_is_stopped_says_so() {
+    let (mesh, context) = (body(), Context::new());
+    context.cancel();
+    let inputs = MatchInputs {
+        curves: vec![Hashed::new(Curves::default())],
+        calibrations: calibrations().into_iter().take(1).map(Hashed::new).collect(),
+        model: Hashed::new(ModelMesh(mesh)),
+        start: Hashed::new(Start(truth())),
+    };
+    let params = MatchParams { method: Method::Bingham2006, ..MatchParams::default() };
+    assert_eq!(MatchBody::run(&inputs, &params, &context), Err(MatchError::Cancelled));
+}

@@ -110,14 +110,25 @@ impl GridOutline {
     /// Sorts the points into cells; the cell of the left-most one.
     fn fill(&mut self, pixels: &[Point2], grid: f64) -> Option<usize> {
         let first = pixels.first()?;
-        let (mut low, mut high, mut left) = (*first, *first, 0);
+        let (mut low, mut high, mut left, mut finite) = (*first, *first, 0, true);
         for (index, p) in pixels.iter().enumerate() {
+            finite &= (p.x + p.y).is_finite();
+            // Branches, not `min` and `max`: they are hardly ever taken.
             if p.x < low.x {
                 (low.x, left) = (p.x, index);
             }
-            low.y = low.y.min(p.y);
-            high.x = high.x.max(p.x);
-            high.y = high.y.max(p.y);
+            if p.x > high.x {
+                high.x = p.x;
+            }
+            if p.y < low.y {
+                low.y = p.y;
+            }
+            if p.y > high.y {
+                high.y = p.y;
+            }
+        }
+        if !finite {
+            return None;
         }
         let size = high - low;
         let (shorter, longer) = (size.min(), size.max());
@@ -133,13 +144,15 @@ impl GridOutline {
         self.cells.clear();
         self.cells.resize(columns * rows, Cell { filled: false, visit: NONE });
         self.cell_of.clear();
-        let (last_column, last_row) = ((columns - 1) as f64, (rows - 1) as f64);
-        for p in pixels {
-            let column = ((p.x - low.x) / side).min(last_column) as usize;
-            let row = ((p.y - low.y) / side).min(last_row) as usize;
-            let cell = row * columns + column;
-            self.cell_of.push(cell as u32);
-            self.cells[cell].filled = true;
+        let per = 1.0 / side;
+        let (last_column, last_row) = (columns as u32 - 1, rows as u32 - 1);
+        self.cell_of.extend(pixels.iter().map(|p| {
+            let column = (((p.x - low.x) * per) as u32).min(last_column);
+            let row = (((p.y - low.y) * per) as u32).min(last_row);
+            row * (last_column + 1) + column
+        }));
+        for cell in &self.cell_of {
+            self.cells[*cell as usize].filled = true;
         }
         Some(self.cell_of[left] as usize)
     }
@@ -281,7 +294,9 @@ mod tests {
         assert_eq!(outline(&thin, 5).len(), 8);
         assert!(outline(&[], 5).is_empty());
         assert!(outline(&[(3.0, 4.0); 9], 5).is_empty());
-        assert!(outline(&[(3.0, 4.0), (f64::NAN, 1.0), (f64::INFINITY, 0.0)], 5).is_empty());
+        for bad in [f64::NAN, f64::INFINITY] {
+            assert!(outline(&[(3.0, 4.0), (4.0, 5.0), (bad, 1.0), (5.0, 0.0)], 5).is_empty());
+        }
     }
 
     #[test]
