@@ -10,13 +10,10 @@
 //! **Measured** on a scene of another program, 40 starts a body (4 poses; offsets with sigma 10, cut at 20), meshes of 15,000
 //! points with their own exact outlines; right is below 1 mm and 1 degree, errors are medians over the right ones, calls
 //! are means, 0.3 to 0.4 ms each on one core. The settings were chosen on these starts. The last row is
-//! `cargo test -p biplane-optimisation --test bingham_scene -- --ignored --nocapture`; the others are the same with other settings,
-//! the first two with forward differences of one step.
+//! `cargo test -p biplane-optimisation --test bingham_scene -- --ignored --nocapture`; the others are the same with other steps.
 //!
 //! | differences | bone: right | error, mm / degrees | calls | implant: right | error, mm / degrees | calls |
 //! |---|---|---|---|---|---|---|
-//! | forward, 0.05 | 14 | 0.068 / 0.12 | 342 | 7 | 0.055 / 0.13 | 268 |
-//! | forward, 0.2 | 13 | 0.20 / 0.44 | 271 | 18 | 0.19 / 0.45 | 289 |
 //! | 0.05 to 0.05 | 12 | 0.009 / 0.016 | 382 | 5 | 0.005 / 0.017 | 324 |
 //! | 0.5 to 0.5 | 37 | 0.016 / 0.041 | 369 | 35 | 0.011 / 0.033 | 357 |
 //! | **1.0 to 0.05** | **40** | **0.005 / 0.011** | **486** | **40** | **0.004 / 0.019** | **519** |
