@@ -3,6 +3,7 @@
 //! `cargo xtask run pipeline.toml` is `biplane run pipeline.toml`, and every other command of the program passes through
 //! too. What only the project itself needs is here: `validate`, `compare` and `starts`.
 
+use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,10 +14,10 @@ use biplane::study::Study;
 use biplane::tables::{PoseTable, same_frame};
 use biplane_acquisition::meshes::{LengthUnit, read_mesh};
 use biplane_validation::{
-    Check, Distribution, STARTS, SceneError, StartOffset, knee, noise, read_body, read_reference, real_knee,
-    seen_from,
+    Budgets, Distribution, Effort, Lab, STARTS, SceneError, StartOffset, Table, noise, read_body,
+    read_reference, sections, seen_from,
 };
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 
 #[derive(Parser)]
 #[command(name = "cargo xtask")]
@@ -27,16 +28,18 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Measure accuracy from seeded starts against poses that this program did not make, and hold it to its limits.
+    /// Make known truth, run the product's own stages on it, print the thesis's tables with ours beside them, and hold
+    /// every figure to its limit. The full run writes docs/validation.md and the README's table (about 15 minutes).
     Validate {
-        /// What to measure.
-        #[arg(value_enum, default_values_t = [Scenes::Knee, Scenes::Real])]
-        scenes: Vec<Scenes>,
-        /// Starts for each frame.
-        #[arg(long, default_value_t = STARTS.count)]
-        count: usize,
-        #[command(flatten)]
-        drawn: Drawn,
+        /// The form of a minute or two that CI runs: fewer frames; writes nothing.
+        #[arg(long)]
+        quick: bool,
+        /// Measure these sections alone; writes nothing.
+        #[arg(long, value_delimiter = ',', value_name = "SECTION", value_parser = section_names())]
+        only: Vec<String>,
+        /// Seed of all that is drawn; limits are for seed 1, and another one writes nothing.
+        #[arg(long, default_value_t = SEED)]
+        seed: u64,
     },
     /// Compare a study's results/poses.csv with known poses; fails beyond the limits.
     Compare {
@@ -114,14 +117,11 @@ impl Drawn {
     }
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Scenes {
-    /// The example study: simulated, truth known.
-    Knee,
-    /// The real knee implant, where its data folder is present.
-    Real,
-    /// The example study from starts turned by 45 to 180 degrees: none may be called good where it is wrong (minutes).
-    Turned,
+/// The seed that limits are stated for.
+const SEED: u64 = 1;
+
+fn section_names() -> clap::builder::PossibleValuesParser {
+    clap::builder::PossibleValuesParser::new(sections::ALL.iter().map(|s| s.0))
 }
 
 fn main() -> ExitCode {
@@ -132,7 +132,7 @@ fn main() -> ExitCode {
         return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
     }
     let done = match Arguments::parse().task {
-        Task::Validate { scenes, count, drawn } => validate(&scenes, &drawn.offset(count)),
+        Task::Validate { quick, only, seed } => validate(quick, &only, seed),
         Task::Compare { pipeline, body, reference, limit_mm, limit_deg } => {
             compare(&pipeline, &body, &reference, limit_mm, limit_deg)
         }
@@ -163,49 +163,51 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
 }
 
-fn validate(scenes: &[Scenes], starts: &StartOffset) -> Result<bool, SceneError> {
-    let mut beyond = Vec::new();
-    for scene in scenes {
-        let checks = match scene {
-            Scenes::Knee => knee(),
-            Scenes::Real => real_knee(root()).unwrap_or_else(|| {
-                println!("real knee: left out, its data folder ../shared/data/real is not here");
-                Vec::new()
-            }),
-            Scenes::Turned => {
-                for check in knee() {
-                    let check = Check { limits: None, ..check };
-                    let summary = check.measure_turned(root())?;
-                    println!("{}: 42 starts a frame, turned by 45 to 180 degrees about six axes", check.name);
-                    println!("{summary}");
-                    beyond.extend(check.passed_limits(&summary));
-                }
-                continue;
+/// What stands above the sections of docs/validation.md.
+const HEAD: &str = "# Validation
+
+Written by `cargo xtask validate`, which makes known truth, runs the program's own stages on it and holds every figure of
+ours to the limit below it; `--quick` does a part of it in CI. Seed 1. Truth is made by `crates/testing/phantom`, which shares no
+projection, outline or distortion with the code that it measures, except where a section says that it is another's. Errors
+of a pose are at the area centroid of its mesh ([conventions.md](conventions.md)); a match is *wrong* beyond 1 mm or 1 degree.
+Times are of one core of the machine that wrote this page. Limits are in `crates/testing/validation/budgets.toml`.
+";
+
+fn validate(quick: bool, only: &[String], seed: u64) -> Result<bool, Box<dyn Error>> {
+    let budgets = Budgets::built_in()?;
+    let effort = if quick { Effort::Quick } else { Effort::Full };
+    let lab = Lab::new(root(), effort, seed);
+    let mut measured = Vec::new();
+    for (name, measure) in sections::ALL.iter().filter(|s| only.is_empty() || only.iter().any(|o| o == s.0)) {
+        let begun = std::time::Instant::now();
+        eprintln!("{name} ...");
+        match measure(&lab)? {
+            Some(section) => {
+                println!("{}", section.markdown(&budgets, "docs/validation"));
+                measured.push(section);
             }
-        };
-        for check in checks {
-            // The limits are for the starts they were set with.
-            let same =
-                starts.translation_mm == STARTS.translation_mm && starts.rotation_deg == STARTS.rotation_deg;
-            let check = Check { starts: *starts, limits: check.limits.filter(|_| same), ..check };
-            let begun = std::time::Instant::now();
-            let summary = check.measure(root())?;
-            println!(
-                "{}: {} starts a frame, each {} mm and {} degrees off, seed {} ({:.1} s)",
-                check.name,
-                starts.count,
-                starts.translation_mm,
-                starts.rotation_deg,
-                starts.seed,
-                begun.elapsed().as_secs_f64()
-            );
-            println!("{summary}");
-            beyond.extend(check.passed_limits(&summary));
+            None => println!("{name}: left out, its data is not here\n"),
         }
+        eprintln!("{name}: {:.1} s", begun.elapsed().as_secs_f64());
+    }
+    let tables: Vec<&Table> = measured.iter().flat_map(|s| &s.tables).collect();
+    let mut beyond: Vec<String> = tables.iter().flat_map(|t| t.beyond(&budgets)).collect();
+    if !quick && only.is_empty() && measured.len() == sections::ALL.len() {
+        beyond.extend(budgets.left_over(&tables));
+    }
+    if !quick && only.is_empty() && seed == SEED {
+        biplane_validation::write(&root().join("docs"), HEAD, &measured, &budgets)?;
+        let path = root().join("README.md");
+        match biplane_validation::readme(&std::fs::read_to_string(&path)?, &measured) {
+            Some(text) => std::fs::write(path, text)?,
+            None => beyond.push("README.md: the marks between which its table goes are gone".to_owned()),
+        }
+        println!("written: docs/validation.md, docs/validation/*.svg, the table of README.md");
     }
     for line in &beyond {
         println!("BEYOND ITS LIMIT: {line}");
     }
+    println!("{} figures beyond their limits", beyond.len());
     Ok(beyond.is_empty())
 }
 
@@ -215,7 +217,7 @@ fn compare(
     reference: &Path,
     limit_mm: f64,
     limit_deg: f64,
-) -> Result<bool, SceneError> {
+) -> Result<bool, Box<dyn Error>> {
     let prepared = Prepared::of(Study::load(pipeline)?)?;
     let (_, mesh) = read_body(&prepared, pipeline, body)?;
     let results = prepared.study.output.join("poses.csv");
@@ -243,7 +245,7 @@ fn relative(
     other: &str,
     reference: &Path,
     frames: &str,
-) -> Result<bool, SceneError> {
+) -> Result<bool, Box<dyn Error>> {
     let prepared = Prepared::of(Study::load(pipeline)?)?;
     let (_, mesh) = read_body(&prepared, pipeline, body)?;
     let table = PoseTable::read(&prepared.study.output.join("poses.csv"))
@@ -296,7 +298,7 @@ fn side_by_side(pictures: &[PathBuf], output: &Path) -> image::ImageResult<()> {
     joined.save(output)
 }
 
-fn starts(trial: &str, bodies: &[String], offset: &StartOffset) -> Result<bool, SceneError> {
+fn starts(trial: &str, bodies: &[String], offset: &StartOffset) -> Result<bool, Box<dyn Error>> {
     println!("{}", biplane::tables::EXAMPLE_HEADER);
     for (number, text) in bodies.iter().enumerate() {
         let parts = text.split_once('=').and_then(|(body, files)| Some((body, files.split_once(',')?)));

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::{Budgets, Table};
+use crate::summary::distribution_columns;
+use crate::{Budgets, Row, Table};
 
 /// A plot, ready to be written.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +47,47 @@ impl Section {
     }
 }
 
+/// The rows that the README shows: table, row.
+const HEADLINES: [(&str, &str); 11] = [
+    ("gvirtualxray", "knee implant, femoral component"),
+    ("gvirtualxray", "knee implant, tray"),
+    ("gvirtualxray", "natural knee, femur"),
+    ("gvirtualxray", "natural knee, tibia"),
+    ("end-to-end", "femoral component"),
+    ("end-to-end", "tibial tray"),
+    ("end-to-end", "distal femur"),
+    ("end-to-end", "proximal tibia"),
+    ("4.1-many", "femoral component, 15000 points"),
+    ("4.1-many", "tibial component, 15000 points"),
+    ("real", "real femur, pixel_origin = \"centre\""),
+];
+/// Between these lines the README has what [`headlines`] makes.
+const MARKS: (&str, &str) = ("<!-- written by cargo xtask validate -->\n", "<!-- until here -->\n");
+
+/// The table of the README, without limits: they stand where its rows come from.
+fn headlines(sections: &[Section]) -> String {
+    let tables: Vec<&Table> = sections.iter().flat_map(|s| &s.tables).collect();
+    let columns = distribution_columns();
+    let rows = HEADLINES.iter().filter_map(|(id, label)| {
+        let table = tables.iter().find(|t| t.id == *id)?;
+        let row = table.rows.iter().find(|r| r.label == *label)?;
+        Some(Row {
+            label: format!("{}: {label}", table.heading),
+            ours: false,
+            cells: row.cells[..columns.len()].to_vec(),
+        })
+    });
+    let rows = rows.collect();
+    Table { id: String::new(), heading: "measured".to_owned(), columns, rows }.plain()
+}
+
+/// The README with its table made anew; `None` where it has no place for it.
+pub fn readme(text: &str, sections: &[Section]) -> Option<String> {
+    let (before, rest) = text.split_once(MARKS.0)?;
+    let (_, after) = rest.split_once(MARKS.1)?;
+    Some(format!("{before}{}{}{}{after}", MARKS.0, headlines(sections), MARKS.1))
+}
+
 /// Name of the document's folder of plots.
 const PLOTS: &str = "validation";
 
@@ -74,4 +116,48 @@ pub fn write(folder: &Path, head: &str, sections: &[Section], budgets: &Budgets)
         }
     }
     std::fs::write(folder.join("validation.md"), text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Cell;
+
+    fn section(value: f64) -> Section {
+        let cells = distribution_columns().iter().map(|_| Cell::Number(value)).collect();
+        let rows = vec![Row::ours("femoral component", cells)];
+        let table = Table {
+            id: "end-to-end".to_owned(),
+            heading: "from raw pictures".to_owned(),
+            columns: distribution_columns(),
+            rows,
+        };
+        Section { title: "A title".to_owned(), text: vec![], tables: vec![table], plots: vec![] }
+    }
+
+    #[test]
+    fn the_readme_gets_its_rows_and_keeps_the_rest() {
+        let text = format!("above\n{}old\n{}below\n", MARKS.0, MARKS.1);
+        let made = readme(&text, &[section(0.125)]).unwrap();
+        assert!(made.starts_with("above\n") && made.ends_with("below\n") && !made.contains("old"));
+        assert!(made.contains("| from raw pictures: femoral component | 0.125 |"), "{made}");
+        assert_eq!(readme(&made, &[section(0.125)]).as_deref(), Some(made.as_str()));
+        assert_eq!(readme("no marks", &[]), None);
+    }
+
+    #[test]
+    fn plots_of_an_earlier_run_go_and_other_files_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let plots = folder.path().join(PLOTS);
+        std::fs::create_dir_all(&plots).unwrap();
+        for name in ["old.svg", "notes.txt"] {
+            std::fs::write(plots.join(name), "x").unwrap();
+        }
+        let plot = Plot { file: "new.svg".to_owned(), caption: "c".to_owned(), svg: "<svg/>".to_owned() };
+        let one = Section { plots: vec![plot], ..section(1.0) };
+        write(folder.path(), "# Head\n", &[one], &Budgets::built_in().unwrap()).unwrap();
+        assert!(!plots.join("old.svg").exists() && plots.join("notes.txt").exists());
+        let text = std::fs::read_to_string(folder.path().join("validation.md")).unwrap();
+        assert!(text.contains("## A title") && text.contains("](validation/new.svg)"));
+    }
 }

@@ -21,6 +21,9 @@ pub const FINEST: usize = 200_000;
 const JOINT_MM: (f64, f64) = (8.0, -1.0);
 /// How far the bones' joint surfaces are from the joint line, mm: cartilage.
 const CARTILAGE_MM: f64 = 2.5;
+/// Thickness of the tray's plate, and of the femoral component, mm.
+const TRAY_MM: f64 = 5.0;
+const METAL_MM: f64 = 9.0;
 /// How the knee is turned about z, degrees.
 const TURNED_DEG: f64 = 25.0;
 
@@ -71,20 +74,41 @@ impl Posture {
     /// `world_from_model` of a body.
     pub fn pose(&self, body: Body) -> Pose {
         let (low, high) = body.solid().bounds();
+        self.placed(
+            body,
+            match body {
+                Body::FemoralComponent => JOINT_MM.0 - low.z,
+                Body::DistalFemur => CARTILAGE_MM - low.z,
+                Body::TibialTray => JOINT_MM.1 - high.z,
+                Body::ProximalTibia => -CARTILAGE_MM - high.z,
+                Body::Patella => 30.0,
+            },
+        )
+    }
+
+    /// `world_from_model` of a bone below an implant, whose mesh is `scale` times its real size: the femur's joint surface
+    /// inside the component, the tibia's below the tray.
+    pub fn pose_below_implant(&self, bone: Body, scale: f64) -> Pose {
+        let (low, high) = bone.solid().bounds();
+        self.placed(
+            bone,
+            match bone {
+                Body::ProximalTibia => JOINT_MM.1 - TRAY_MM - scale * high.z,
+                _ => JOINT_MM.0 + METAL_MM - scale * low.z,
+            },
+        )
+    }
+
+    fn placed(&self, body: Body, height: f64) -> Pose {
         let femur = matches!(body, Body::FemoralComponent | Body::DistalFemur | Body::Patella);
-        let height = match body {
-            Body::FemoralComponent => JOINT_MM.0 - low.z,
-            Body::DistalFemur => CARTILAGE_MM - low.z,
-            Body::TibialTray => JOINT_MM.1 - high.z,
-            Body::ProximalTibia => -CARTILAGE_MM - high.z,
-            Body::Patella => 30.0,
-        };
         let forward = if body == Body::Patella { 45.0 } else { 0.0 };
         let mut pose = Pose::new(UnitQuaternion::identity(), Vector3::new(0.0, forward, height));
         if femur {
             // The condyles roll about an axis through them, about as high as an implant's middle.
             let hinge = Point3::new(0.0, 0.0, 28.0);
-            let flexion = Vector3::new(-self.flexion_deg.to_radians(), 0.0, 0.0);
+            // The patella follows the femur half of the way.
+            let share = if body == Body::Patella { 0.5 } else { 1.0 };
+            let flexion = Vector3::new(-share * self.flexion_deg.to_radians(), 0.0, 0.0);
             pose = pose.moved(&Twist { translation: Vector3::zeros(), rotation: flexion }, &hinge);
             pose = pose.moved(&self.femur, &hinge);
         }

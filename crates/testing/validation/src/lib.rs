@@ -3,6 +3,7 @@
 
 mod document;
 pub mod elsewhere;
+mod faults;
 pub mod knee;
 pub mod lab;
 pub mod outcome;
@@ -16,7 +17,7 @@ pub mod summary;
 mod table;
 pub mod thesis;
 
-pub use document::{Plot, Section, write};
+pub use document::{Plot, Section, readme, write};
 pub use lab::{Effort, Lab};
 pub use relative::{noise, seen_from};
 pub use scene::{Claim, Made, Origin, Posed, Scene, SceneError, read_body, read_reference};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use biplane_artifact::{Calibration, Curves, Frame};
-use biplane_geometry::{Mesh, Point3, Pose, Twist, Vector3};
+use biplane_geometry::{Mesh, Point3, Pose};
 use biplane_phantom::{
     Absorber, Body, Ellipsoid, Exposure, Material, PosedBody, Surface, TrueFluoroscope, picture,
 };
@@ -104,16 +104,8 @@ impl Lab {
             if let Some(inner) = self.workshop.inner(body, COARSE)? {
                 absorbers.push(Absorber::new(scaled(inner), TrabecularBone, CorticalBone));
             }
-            let mut pose = posture.pose(body);
-            if scale != 1.0 {
-                // Smaller about its origin, so that it ends inside the implant; moved on towards its shaft.
-                let up = if body == Body::DistalFemur { 1.0 } else { -1.0 };
-                let shift = Twist {
-                    translation: pose.rotation() * Vector3::new(0.0, 0.0, 6.0 * up),
-                    rotation: Vector3::zeros(),
-                };
-                pose = pose.moved(&shift, &Point3::origin());
-            }
+            let pose =
+                if scale == 1.0 { posture.pose(body) } else { posture.pose_below_implant(body, scale) };
             Ok(at_rest(pose, absorbers))
         };
         match knee {

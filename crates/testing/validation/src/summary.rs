@@ -42,8 +42,12 @@ pub fn distribution_row(label: &str, outcomes: &[Outcome]) -> Row {
     let counted: Vec<&Outcome> = outcomes.iter().filter(|o| o.counts).collect();
     let mm = Distribution::of(counted.iter().map(|o| o.error.translation_mm).collect());
     let deg = Distribution::of(counted.iter().map(|o| o.error.rotation_rad.to_degrees()).collect());
-    let mut cells: Vec<Cell> =
-        [mm.median, mm.p95, mm.worst, deg.median, deg.p95, deg.worst].map(Cell::Number).into();
+    let errors = [mm.median, mm.p95, mm.worst, deg.median, deg.p95, deg.worst];
+    // Where no match counts there is no error, and the share of good ones is what fails.
+    let mut cells: Vec<Cell> = match counted.is_empty() {
+        true => errors.map(|_| Cell::text("-")).into(),
+        false => errors.map(Cell::Number).into(),
+    };
     cells.push(Cell::Share(counted.len(), outcomes.len()));
     cells.push(Cell::Number(counted.iter().filter(|o| !o.right()).count() as f64));
     Row::ours(label, cells)

@@ -252,8 +252,17 @@ impl Table {
         found
     }
 
+    /// As Markdown, without limits.
+    pub fn plain(&self) -> String {
+        self.with_lines_below(|_| None)
+    }
+
     /// As Markdown; below each of our rows that of its limits, but once where neighbours have the same ones.
     pub fn markdown(&self, budgets: &Budgets) -> String {
+        self.with_lines_below(|row| row.ours.then(|| self.limits_line(budgets, row)).flatten())
+    }
+
+    fn with_lines_below(&self, line: impl Fn(&Row) -> Option<String>) -> String {
         let mut text = format!("| {} |", self.heading);
         for c in &self.columns {
             let _ = write!(text, " {} |", c.name);
@@ -261,15 +270,14 @@ impl Table {
         text.push_str("\n|---|");
         text.push_str(&"---|".repeat(self.columns.len()));
         text.push('\n');
-        let limits_of = |row: &Row| row.ours.then(|| self.limits_line(budgets, row)).flatten();
         for (index, row) in self.rows.iter().enumerate() {
             let _ = write!(text, "| {} |", row.label);
             for (column, cell) in self.columns.iter().zip(&row.cells) {
                 let _ = write!(text, " {} |", cell.print(column.decimals));
             }
             text.push('\n');
-            let own = limits_of(row);
-            if own.is_some() && own != self.rows.get(index + 1).and_then(limits_of) {
+            let own = line(row);
+            if own.is_some() && own != self.rows.get(index + 1).and_then(&line) {
                 text.push_str(&own.unwrap_or_default());
             }
         }

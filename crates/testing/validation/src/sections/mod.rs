@@ -1,10 +1,13 @@
 //! The sections of `docs/validation.md`, in its order: what `cargo xtask validate` measures.
 
+mod coverage;
+mod end_to_end;
 mod ideal;
 mod moved;
 mod natural;
 mod spheres;
 mod studies;
+mod sweeps;
 mod views;
 
 use crate::plot::PlotError;
@@ -31,6 +34,10 @@ pub const ALL: &[(&str, Measure)] = &[
     ("spheres", spheres::measure),
     ("moved", moved::measure),
     ("views", views::measure),
+    ("end-to-end", end_to_end::measure),
+    ("budget", end_to_end::budget),
+    ("sweeps", sweeps::measure),
+    ("coverage", coverage::measure),
     ("simulated", studies::simulated),
     ("far", studies::far),
     ("real", studies::real),
