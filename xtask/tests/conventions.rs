@@ -27,14 +27,9 @@ fn vector(value: &serde_json::Value) -> Vector3 {
     Vector3::from_iterator(value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()))
 }
 
-/// `scene.json` of a scene that another program made, with its folder; `None`, with a message, where it is not there.
-fn scene() -> Option<serde_json::Value> {
-    let path = root().join("../shared/data/simulated/scene/scene.json");
-    if !path.is_file() {
-        println!("skipped: {} is not there", path.display());
-        return None;
-    }
-    Some(json(&path))
+/// `scene.json` of a scene that another program made.
+fn scene() -> serde_json::Value {
+    json(&root().join("fixtures/scene/scene.json"))
 }
 
 // Poses
@@ -70,7 +65,7 @@ fn frames_are_in_the_type() {
 
 #[test]
 fn thesis_angles_are_those_of_a_scene_made_elsewhere() {
-    let Some(scene) = scene() else { return };
+    let scene = scene();
     let mut count = 0;
     for (body, object) in scene["objects"].as_object().unwrap() {
         for pose in object["poses"].as_array().unwrap() {

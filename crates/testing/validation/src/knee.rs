@@ -24,6 +24,10 @@ const CARTILAGE_MM: f64 = 2.5;
 /// Thickness of the tray's plate, and of the femoral component, mm.
 const TRAY_MM: f64 = 5.0;
 const METAL_MM: f64 = 9.0;
+/// Radius of the condyles' back, mm: the femur turns about its axis, so that it rolls on the tibia at about one height.
+const CONDYLE_MM: f64 = 23.0;
+/// The part of the flexion by which the shin leans; the thigh leans by the rest.
+const SHIN: f64 = 0.35;
 /// How the knee is turned about z, degrees.
 const TURNED_DEG: f64 = 25.0;
 
@@ -74,44 +78,43 @@ impl Posture {
     /// `world_from_model` of a body.
     pub fn pose(&self, body: Body) -> Pose {
         let (low, high) = body.solid().bounds();
-        self.placed(
-            body,
-            match body {
-                Body::FemoralComponent => JOINT_MM.0 - low.z,
-                Body::DistalFemur => CARTILAGE_MM - low.z,
-                Body::TibialTray => JOINT_MM.1 - high.z,
-                Body::ProximalTibia => -CARTILAGE_MM - high.z,
-                Body::Patella => 30.0,
-            },
-        )
+        let height = match body {
+            Body::FemoralComponent => JOINT_MM.0 - low.z,
+            Body::DistalFemur => CARTILAGE_MM - low.z,
+            Body::TibialTray => JOINT_MM.1 - high.z,
+            Body::ProximalTibia => -CARTILAGE_MM - high.z,
+            Body::Patella => 30.0,
+        };
+        let lowest = if body == Body::DistalFemur { CARTILAGE_MM } else { JOINT_MM.0 };
+        self.placed(body, height, Point3::new(0.0, low.y + CONDYLE_MM, lowest + CONDYLE_MM))
     }
 
     /// `world_from_model` of a bone below an implant, whose mesh is `scale` times its real size: the femur's joint surface
     /// inside the component, the tibia's below the tray.
     pub fn pose_below_implant(&self, bone: Body, scale: f64) -> Pose {
         let (low, high) = bone.solid().bounds();
-        self.placed(
-            bone,
-            match bone {
-                Body::ProximalTibia => JOINT_MM.1 - TRAY_MM - scale * high.z,
-                _ => JOINT_MM.0 + METAL_MM - scale * low.z,
-            },
-        )
+        let height = match bone {
+            Body::ProximalTibia => JOINT_MM.1 - TRAY_MM - scale * high.z,
+            _ => JOINT_MM.0 + METAL_MM - scale * low.z,
+        };
+        let back = Body::FemoralComponent.solid().bounds().0.y;
+        self.placed(bone, height, Point3::new(0.0, back + CONDYLE_MM, JOINT_MM.0 + CONDYLE_MM))
     }
 
-    fn placed(&self, body: Body, height: f64) -> Pose {
-        let femur = matches!(body, Body::FemoralComponent | Body::DistalFemur | Body::Patella);
-        let forward = if body == Body::Patella { 45.0 } else { 0.0 };
+    /// A body so high, flexed about `hinge` if it belongs to the femur.
+    fn placed(&self, body: Body, height: f64, hinge: Point3) -> Pose {
+        let femur = matches!(body, Body::FemoralComponent | Body::DistalFemur);
+        // Held by its tendon, the patella stays before the joint while the femur turns behind it.
+        let forward = if body == Body::Patella { 52.0 } else { 0.0 };
         let mut pose = Pose::new(UnitQuaternion::identity(), Vector3::new(0.0, forward, height));
         if femur {
-            // The condyles roll about an axis through them, about as high as an implant's middle.
-            let hinge = Point3::new(0.0, 0.0, 28.0);
-            // The patella follows the femur half of the way.
-            let share = if body == Body::Patella { 0.5 } else { 1.0 };
-            let flexion = Vector3::new(-share * self.flexion_deg.to_radians(), 0.0, 0.0);
+            let flexion = Vector3::new(self.flexion_deg.to_radians(), 0.0, 0.0);
             pose = pose.moved(&Twist { translation: Vector3::zeros(), rotation: flexion }, &hinge);
             pose = pose.moved(&self.femur, &hinge);
         }
+        // In a lunge the shin leans forward as the knee bends.
+        let lean = Vector3::new(-SHIN * self.flexion_deg.to_radians(), 0.0, 0.0);
+        pose = pose.moved(&Twist { translation: Vector3::zeros(), rotation: lean }, &Point3::origin());
         let about_z = Rotation3::from_axis_angle(&Vector3::z_axis(), TURNED_DEG.to_radians());
         let turned = Twist { translation: Vector3::zeros(), rotation: about_z.scaled_axis() };
         pose.moved(&turned, &Point3::origin()).moved(&self.knee, &Point3::origin())
