@@ -148,6 +148,18 @@ fn dependencies_point_one_way() {
 }
 
 #[test]
+fn the_phantom_knows_nothing_of_what_it_measures() {
+    let (_, manifest) = &crates()["biplane-phantom"];
+    for table in ["dependencies", "dev-dependencies"] {
+        let own: Vec<String> = dependencies(manifest, table).into_iter().filter(|d| is_internal(d)).collect();
+        assert!(
+            own.iter().all(|d| d == "biplane-geometry" || d == "biplane-artifact"),
+            "phantom has {own:?} in [{table}]: truth that uses the code it measures hides that code's faults"
+        );
+    }
+}
+
+#[test]
 fn geometry_has_no_serde() {
     let (_, manifest) = &crates()["biplane-geometry"];
     for table in ["dependencies", "dev-dependencies"] {

@@ -4,7 +4,7 @@
 //! the outline as a whole. At the rim of a smooth body the path of a ray starts from zero, so the steepest gradient lies
 //! inside the true outline, and smoothing adds to it: 0.37 to 0.60 px on the example study (`A_inset_px` and `B_inset_px`
 //! in its `results/poses.csv`). Left in the residuals, that bias turned the femoral component by 0.22 degrees in the median;
-//! with the inset solved for it is 0.07 (`cargo xtask validate knee`, with and without `inset_px = 0.0` under `[match]` in
+//! with the inset solved for it is 0.07 (`cargo xtask validate --only simulated`, with and without `inset_px = 0.0` under `[match]` in
 //! `pipeline.toml`). The inset is eliminated from the normal equations, so a step stays 6 x 6.
 
 use biplane_fluoroscope::Fluoroscope;
@@ -98,7 +98,7 @@ impl Refined {
 /// Length along a contour over which residuals move together, px: they are differences between mesh and body, and edges
 /// beside bone or cement that are off as a whole, not noise of single pixels. Two residuals nearer than this say the same
 /// thing twice. 150 px gives a mean squared error over the stated covariance of 6.8 (femoral component) and 3.8 (tray) on
-/// the simulated knee, where 6 would be right (`cargo xtask validate knee`).
+/// the simulated knee, where 6 would be right (`cargo xtask validate --only simulated`).
 const CORRELATION_PX: f64 = 150.0;
 
 /// One outline sample that found an edge.
