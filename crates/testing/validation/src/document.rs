@@ -6,15 +6,15 @@ use std::path::Path;
 use crate::summary::distribution_columns;
 use crate::{Budgets, Row, Table};
 
-/// A plot, ready to be written.
+/// A plot or a picture, ready to be written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
     /// Its file's name.
     pub file: String,
     /// What it shows.
     pub caption: String,
-    /// The picture.
-    pub svg: String,
+    /// SVG or PNG.
+    pub content: Vec<u8>,
 }
 
 /// What belongs together: how it was measured, its tables and its plots.
@@ -104,14 +104,14 @@ pub fn write(folder: &Path, head: &str, sections: &[Section], budgets: &Budgets)
         text.push_str(section.markdown(budgets, PLOTS).trim_end());
         text.push('\n');
         for plot in &section.plots {
-            std::fs::write(plots.join(&plot.file), &plot.svg)?;
+            std::fs::write(plots.join(&plot.file), &plot.content)?;
         }
     }
     let kept: Vec<&str> = sections.iter().flat_map(|s| &s.plots).map(|p| p.file.as_str()).collect();
     for entry in std::fs::read_dir(&plots)? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if path.extension().is_some_and(|e| e == "svg") && !kept.contains(&name.as_str()) {
+        if path.extension().is_some_and(|e| e == "svg" || e == "png") && !kept.contains(&name.as_str()) {
             std::fs::remove_file(path)?;
         }
     }
@@ -153,7 +153,7 @@ mod tests {
         for name in ["old.svg", "notes.txt"] {
             std::fs::write(plots.join(name), "x").unwrap();
         }
-        let plot = Plot { file: "new.svg".to_owned(), caption: "c".to_owned(), svg: "<svg/>".to_owned() };
+        let plot = Plot { file: "new.svg".to_owned(), caption: "c".to_owned(), content: b"<svg/>".to_vec() };
         let one = Section { plots: vec![plot], ..section(1.0) };
         write(folder.path(), "# Head\n", &[one], &Budgets::built_in().unwrap()).unwrap();
         assert!(!plots.join("old.svg").exists() && plots.join("notes.txt").exists());

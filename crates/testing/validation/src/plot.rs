@@ -1,5 +1,7 @@
 //! Plots as SVG: errors against something that is varied, and figures of several methods side by side.
 
+use biplane_artifact::Frame;
+use image::{GrayImage, ImageFormat, imageops};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -33,6 +35,8 @@ pub struct Series {
 /// A panel of a plot of lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
+    /// What x is, with its unit.
+    pub x: String,
     /// What y is, with its unit.
     pub y: String,
     /// Lines.
@@ -58,32 +62,46 @@ fn drawn(
         draw(&area)?;
         area.present().map_err(failed)?;
     }
-    Ok(Plot { file: file.to_owned(), caption: caption.to_owned(), svg })
+    Ok(Plot { file: file.to_owned(), caption: caption.to_owned(), content: svg.into_bytes() })
 }
 
-/// Lines over a common `x`, a panel beside the other. y starts at zero.
+impl Panel {
+    /// Shares of values below x, of distributions that [`cumulative`] makes.
+    pub fn shares(x: &str, series: Vec<Series>) -> Self {
+        Self { x: x.to_owned(), y: SHARE.to_owned(), series, limit: None }
+    }
+}
+
+/// What the y of distributions is.
+const SHARE: &str = "share";
+
+/// Lines, a panel beside the other. y starts at zero.
 ///
 /// # Errors
 /// [`PlotError`].
-pub fn lines(file: &str, caption: &str, x: &str, panels: &[Panel]) -> Result<Plot, PlotError> {
+pub fn lines(file: &str, caption: &str, panels: &[Panel]) -> Result<Plot, PlotError> {
     let size = (420 * panels.len().max(1) as u32, 300);
     drawn(file, caption, size, |area| {
         for (panel, area) in panels.iter().zip(area.split_evenly((1, panels.len()))) {
-            draw_lines(&area, x, panel)?;
+            draw_lines(&area, panel)?;
         }
         Ok(())
     })
 }
 
-fn draw_lines(area: &Area, x: &str, panel: &Panel) -> Result<(), PlotError> {
+fn draw_lines(area: &Area, panel: &Panel) -> Result<(), PlotError> {
     let finite: Vec<(f64, f64)> = panel
         .series
         .iter()
         .flat_map(|s| s.points.iter().copied())
         .filter(|p| p.0.is_finite() && p.1.is_finite())
         .collect();
-    let low = finite.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
+    let mut low = finite.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
     let high = finite.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
+    let is_share = panel.y == SHARE;
+    if is_share {
+        low = low.min(0.0);
+    }
     let top = finite.iter().map(|p| p.1).chain(panel.limit).fold(0.0, f64::max) * 1.15;
     if finite.is_empty() || high <= low {
         return Ok(());
@@ -99,7 +117,7 @@ fn draw_lines(area: &Area, x: &str, panel: &Panel) -> Result<(), PlotError> {
         .light_line_style(TRANSPARENT)
         .x_labels(7)
         .y_labels(6)
-        .x_desc(x)
+        .x_desc(&panel.x)
         .y_desc(&panel.y)
         .draw()
         .map_err(failed)?;
@@ -121,7 +139,7 @@ fn draw_lines(area: &Area, x: &str, panel: &Panel) -> Result<(), PlotError> {
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
+        .position(if is_share { SeriesLabelPosition::LowerRight } else { SeriesLabelPosition::UpperLeft })
         .background_style(WHITE.mix(0.8))
         .border_style(TRANSPARENT)
         .draw()
@@ -142,7 +160,7 @@ pub struct Dots {
 /// # Errors
 /// [`PlotError`].
 pub fn dots(file: &str, caption: &str, x: &str, series: &[&str], rows: &[Dots]) -> Result<Plot, PlotError> {
-    let size = (760, 90 + 24 * rows.len() as u32);
+    let size = (760, 80 + 24 * (rows.len() + series.len()) as u32);
     drawn(file, caption, size, |area| {
         let values = || rows.iter().flat_map(|r| r.values.iter().flatten()).copied().filter(|v| *v > 0.0);
         let low = values().fold(f64::INFINITY, f64::min) / 1.6;
@@ -155,7 +173,8 @@ pub fn dots(file: &str, caption: &str, x: &str, series: &[&str], rows: &[Dots]) 
             .margin(12)
             .x_label_area_size(38)
             .y_label_area_size(270)
-            .build_cartesian_2d((low..high).log_scale(), 0.0..count)
+            // Above the rows there is room for the legend.
+            .build_cartesian_2d((low..high).log_scale(), 0.0..count + series.len() as f64)
             .map_err(failed)?;
         chart
             .configure_mesh()
@@ -163,7 +182,7 @@ pub fn dots(file: &str, caption: &str, x: &str, series: &[&str], rows: &[Dots]) 
             .disable_y_mesh()
             .y_labels(0)
             .x_desc(x)
-            .x_label_formatter(&|v| format!("{v}"))
+            .x_label_formatter(&|v| format!("{}", (v * 1e6).round() / 1e6))
             .draw()
             .map_err(failed)?;
         for (index, row) in rows.iter().enumerate() {
@@ -204,6 +223,40 @@ pub fn dots(file: &str, caption: &str, x: &str, series: &[&str], rows: &[Dots]) 
     })
 }
 
+/// Distributions of position errors (mm) and rotation errors (degrees), a panel each.
+///
+/// # Errors
+/// [`PlotError`].
+pub fn distributions(file: &str, caption: &str, errors: [Vec<Series>; 2]) -> Result<Plot, PlotError> {
+    let [mm, deg] = errors;
+    let panels = [Panel::shares("position error, mm", mm), Panel::shares("rotation error, degrees", deg)];
+    lines(file, caption, &panels)
+}
+
+/// Side of a frame in a strip, px.
+const TILE_PX: u32 = 320;
+
+/// Frames beside each other as a PNG, each scaled to 320 px and stretched to its own range of grey levels.
+///
+/// # Errors
+/// [`PlotError`].
+pub fn strip(file: &str, caption: &str, frames: &[&Frame]) -> Result<Plot, PlotError> {
+    let mut joined = GrayImage::new(TILE_PX * frames.len() as u32, TILE_PX);
+    for (index, frame) in frames.iter().enumerate() {
+        let top = f64::from(frame.samples.iter().copied().max().unwrap_or(1).max(1));
+        // The square root shows bone and metal beside the open beam.
+        let grey = |s: &u16| (255.0 * (f64::from(*s) / top).sqrt()) as u8;
+        let pixels = frame.samples.iter().map(grey).collect();
+        let full = GrayImage::from_raw(frame.width as u32, frame.height as u32, pixels)
+            .ok_or_else(|| failed("a frame has not as many samples as pixels"))?;
+        let tile = imageops::resize(&full, TILE_PX, TILE_PX, imageops::FilterType::Triangle);
+        imageops::replace(&mut joined, &tile, i64::from(TILE_PX) * index as i64, 0);
+    }
+    let mut content = Vec::new();
+    joined.write_to(&mut std::io::Cursor::new(&mut content), ImageFormat::Png).map_err(failed)?;
+    Ok(Plot { file: file.to_owned(), caption: caption.to_owned(), content })
+}
+
 /// The share of values that are at most x, as points of a line: shows a distribution whole.
 pub fn cumulative(name: &str, values: &[f64]) -> Series {
     let mut sorted = values.to_vec();
@@ -218,6 +271,10 @@ pub fn cumulative(name: &str, values: &[f64]) -> Series {
 mod tests {
     use super::*;
 
+    fn text(plot: &Plot) -> String {
+        String::from_utf8(plot.content.clone()).unwrap()
+    }
+
     #[test]
     fn plots_hold_their_lines_and_labels() {
         let series = |name: &str| Series {
@@ -225,26 +282,26 @@ mod tests {
             points: vec![(0.0, 1.0), (1.0, 2.0), (2.0, f64::NAN)],
         };
         let panel = Panel {
+            x: "noise, px".to_owned(),
             y: "error, mm".to_owned(),
             series: vec![series("default"), series("thesis")],
             limit: Some(3.0),
         };
-        let plot = lines("a.svg", "A caption", "noise, px", &[panel.clone(), panel]).unwrap();
+        let plot = lines("a.svg", "A caption", &[panel.clone(), panel]).unwrap();
         for word in ["noise, px", "error, mm", "default", "thesis", "limit"] {
-            assert!(plot.svg.contains(word), "{word}");
+            assert!(text(&plot).contains(word), "{word}");
         }
         let rows = [Dots { label: "femoral component".to_owned(), values: vec![Some(0.01), None] }];
-        assert!(
-            dots("b.svg", "B", "mm", &["ours", "thesis"], &rows).unwrap().svg.contains("femoral component")
-        );
-        let nothing = Panel { y: String::new(), series: vec![], limit: None };
-        assert!(lines("c.svg", "", "", &[nothing]).is_ok());
+        let plot = dots("b.svg", "B", "mm", &["ours", "thesis"], &rows).unwrap();
+        assert!(text(&plot).contains("femoral component"));
+        let nothing = Panel { x: String::new(), y: String::new(), series: vec![], limit: None };
+        assert!(lines("c.svg", "", &[nothing]).is_ok());
         assert!(dots("d.svg", "", "", &[], &[]).is_ok());
     }
 
     #[test]
     fn cumulative_ends_at_one() {
         let s = cumulative("x", &[3.0, 1.0, 2.0, 4.0]);
-        assert_eq!(s.points, [(1.0, 0.25), (2.0, 0.5), (3.0, 0.75), (4.0, 1.0)]);
+        assert_eq!(s.points, [(1.0, 0.0), (1.0, 0.25), (2.0, 0.5), (3.0, 0.75), (4.0, 1.0)]);
     }
 }

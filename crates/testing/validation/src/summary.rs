@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::outcome::Outcome;
+use crate::plot::{Series, cumulative};
 use crate::{Cell, Column, Row};
 
 /// Median, 95 % and worst of some errors.
@@ -51,6 +52,14 @@ pub fn distribution_row(label: &str, outcomes: &[Outcome]) -> Row {
     cells.push(Cell::Share(counted.len(), outcomes.len()));
     cells.push(Cell::Number(counted.iter().filter(|o| !o.right()).count() as f64));
     Row::ours(label, cells)
+}
+
+/// Position errors (mm) and rotation errors (degrees) of the matches that count, as lines of a plot.
+pub fn cumulative_errors(name: &str, outcomes: &[Outcome]) -> [Series; 2] {
+    let of = |error: fn(&Outcome) -> f64| {
+        cumulative(name, &outcomes.iter().filter(|o| o.counts).map(error).collect::<Vec<_>>())
+    };
+    [of(|o| o.error.translation_mm), of(|o| o.error.rotation_rad.to_degrees())]
 }
 
 impl fmt::Display for Distribution {

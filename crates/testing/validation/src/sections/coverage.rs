@@ -81,7 +81,6 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 let draw = |truth: &_, centroid: &_, frame| near.draw(truth, centroid, frame);
                 all.extend(outcomes(&scene, Method::Default, &thesis_params(), &draw));
             }
-            // All verdicts count.
             let scores: Vec<[f64; 6]> = all.iter().filter_map(normalised).collect();
             let inside = |i: usize, sigmas: f64| {
                 scores.iter().filter(|s| s[i].abs() <= sigmas).count() as f64 / scores.len() as f64
@@ -103,7 +102,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
             table.rows.push(Row::ours(label, cells));
         }
     }
-    let panel = Panel { y: "observed, %".to_owned(), series, limit: None };
+    let panel = Panel { x: "stated, %".to_owned(), y: "observed, %".to_owned(), series, limit: None };
     Ok(Some(Section {
         title: "Coverage of the stated uncertainty".to_owned(),
         text: vec![format!(
@@ -117,7 +116,6 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         plots: vec![lines(
             "coverage.svg",
             "Coverage: share of truths inside the stated interval, mean over the six",
-            "stated, %",
             &[panel],
         )?],
     }))

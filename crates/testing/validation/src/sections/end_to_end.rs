@@ -14,9 +14,9 @@ use crate::knee::Posture;
 use crate::lab::{Frames, calibrations, thesis_params};
 use crate::outcome::{Method, Outcome, outcomes, outline_curves};
 use crate::pictures::{Equipment, Knee};
-use crate::plot::{Dots, Panel, cumulative, dots, lines};
+use crate::plot::{Dots, distributions, dots, strip};
 use crate::scene::{Claim, Made, Origin};
-use crate::summary::{distribution_columns, distribution_row};
+use crate::summary::{cumulative_errors, distribution_columns, distribution_row};
 use crate::{Distribution, Lab, STARTS, Scene, Section, StartOffset, Table};
 
 /// Points of the models, and of models whose own error shall not count.
@@ -112,7 +112,7 @@ fn table(id: &str, heading: &str) -> Table {
 pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut table = table("end-to-end", "from raw pictures, 15,000 points");
     let mut panels = [Vec::new(), Vec::new()];
-    let mut counts = Vec::new();
+    let (mut counts, mut shown) = (Vec::new(), Vec::new());
     let knees = [
         (Knee::Implants, lab.count(10, 2), lab.count(20, 3)),
         (Knee::Natural, lab.count(5, 1), lab.count(12, 3)),
@@ -126,6 +126,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 .map(|k| (format!("{setup}/{k}"), Posture::random(lab.seed + 3, setup * frames + k)))
                 .collect();
             let recorded = lab.record(knee, &postures, &equipment)?;
+            if setup == 0 {
+                shown.extend(recorded[0].frames.iter().cloned());
+            }
             for (all, body) in found.iter_mut().zip(knee.bodies()) {
                 let params = MatchParams::default();
                 let scene = lab.recorded_scene(body, POINTS, &recorded, &equipment.calibrations(), params)?;
@@ -135,13 +138,11 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         for (all, body) in found.iter().zip(knee.bodies()) {
             let name = body.name().replace('-', " ");
             table.rows.push(distribution_row(&name, all));
-            let of = |f: fn(&Outcome) -> f64| all.iter().filter(|o| o.counts).map(f).collect::<Vec<_>>();
-            panels[0].push(cumulative(&name, &of(|o| o.error.translation_mm)));
-            panels[1].push(cumulative(&name, &of(|o| o.error.rotation_rad.to_degrees())));
+            for (panel, series) in panels.iter_mut().zip(cumulative_errors(&name, all)) {
+                panel.push(series);
+            }
         }
     }
-    let panel = |series| Panel { y: "share of matches".to_owned(), series, limit: None };
-    let [mm, deg] = panels;
     Ok(Some(Section {
         title: "End to end, as far as stages reach".to_owned(),
         text: vec![
@@ -159,12 +160,18 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 .to_owned(),
         ],
         tables: vec![table],
-        plots: vec![lines(
+        plots: vec![
+            strip(
+                "phantom.png",
+                "Raw pictures of the phantom: implants in views A and B, a natural knee in views A and B (square root of the grey level)",
+                &shown.iter().collect::<Vec<_>>(),
+            )?,
+            distributions(
             "end-to-end.svg",
             "Raw pictures: share of matches below an error",
-            "position error, mm (left), rotation error, degrees (right)",
-            &[panel(mm), panel(deg)],
-        )?],
+            panels,
+        )?,
+        ],
     }))
 }
 

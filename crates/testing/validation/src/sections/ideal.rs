@@ -9,8 +9,8 @@ use crate::outcome::{
     Method, Outcome, by_plane, columns, compared_columns, compared_rows, errors, outcomes, rms_length, row,
     thesis_row,
 };
-use crate::plot::{Dots, Panel, cumulative, dots, lines};
-use crate::summary::{distribution_columns, distribution_row};
+use crate::plot::{Dots, distributions, dots};
+use crate::summary::{cumulative_errors, distribution_columns, distribution_row};
 use crate::thesis::{
     COMPARED_SIMULATED, DENSITIES_FEMORAL, DENSITIES_TIBIAL, Errors, POSES_FEMORAL, POSES_TIBIAL,
 };
@@ -133,10 +133,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
             let all = outcomes(&scene, Method::Default, &thesis_params(), &draw);
             many.rows.push(distribution_row(&format!("{name}, {points} points"), &all));
             if points == 15_000 {
-                let of =
-                    |f: fn(&Outcome) -> f64| -> Vec<f64> { all.iter().filter(|o| o.counts).map(f).collect() };
-                panels[0].push(cumulative(name, &of(|o| o.error.translation_mm)));
-                panels[1].push(cumulative(name, &of(|o| o.error.rotation_rad.to_degrees())));
+                for (panel, series) in panels.iter_mut().zip(cumulative_errors(name, &all)) {
+                    panel.push(series);
+                }
             }
         }
     }
@@ -148,8 +147,6 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         compared.rows.push(Row::ours(format!("this program, {}", method.name()), cells));
     }
     let series = ["thesis", "bingham2006, ours", "default"];
-    let [mm, deg] = panels;
-    let panel = |series| Panel { y: "share of matches".to_owned(), series, limit: None };
     Ok(Some(Section {
         title: "Implants with ideal outlines: Tables 4.1, 4.2 and 5.1".to_owned(),
         text: vec![
@@ -183,11 +180,10 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 &series,
                 &rotation_dots,
             )?,
-            lines(
+            distributions(
                 "ideal-cumulative.svg",
                 "Random poses, 15,000 points: share of matches below an error",
-                "position error, mm (left), rotation error, degrees (right)",
-                &[panel(mm), panel(deg)],
+                panels,
             )?,
         ],
     }))

@@ -257,11 +257,8 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     }
     let plotted: Vec<f64> = all.iter().map(|d| (d - DIAMETER_MM).abs()).collect();
     table.rows.push(distance_row("other scenes, one start each, default".to_owned(), &all, starts));
-    let panel = Panel {
-        y: "share of pairs".to_owned(),
-        series: vec![cumulative("default, many scenes", &plotted)],
-        limit: None,
-    };
+    let panel =
+        Panel::shares("error of the distance, mm", vec![cumulative("default, many scenes", &plotted)]);
     Ok(Some(Section {
         title: "Eight touching spheres: Table 4.4".to_owned(),
         text: vec![format!(
@@ -283,7 +280,6 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         plots: vec![lines(
             "table-4-4.svg",
             "Spheres in many scenes: share of neighbours whose distance is wrong by less than x",
-            "error of the distance, mm",
             &[panel],
         )?],
     }))

@@ -4,8 +4,8 @@ use biplane_optimisation::BinghamParams;
 
 use super::SectionError;
 use crate::outcome::{Method, Outcome, outcomes};
-use crate::plot::{Panel, cumulative, lines};
-use crate::summary::{distribution_columns, distribution_row};
+use crate::plot::distributions;
+use crate::summary::{cumulative_errors, distribution_columns, distribution_row};
 use crate::{
     Cell, Column, Distribution, Lab, Row, STARTS, Scene, Section, StartOffset, Table, elsewhere, lab, set_a,
     turned,
@@ -98,12 +98,9 @@ pub fn simulated(lab: &Lab) -> Result<Option<Section>, SectionError> {
     for studied in &SIMULATED {
         let all = matched(lab, studied, lab.count(20, 3))?;
         pictures.rows.push(row(studied.0, &all));
-        let counted = || all.iter().filter(|o| o.counts);
-        panels[0].push(cumulative(studied.0, &counted().map(|o| o.error.translation_mm).collect::<Vec<_>>()));
-        panels[1].push(cumulative(
-            studied.0,
-            &counted().map(|o| o.error.rotation_rad.to_degrees()).collect::<Vec<_>>(),
-        ));
+        for (panel, series) in panels.iter_mut().zip(cumulative_errors(studied.0, &all)) {
+            panel.push(series);
+        }
     }
     let mut outlines = table("outlines-made-elsewhere", "ideal outlines made elsewhere");
     for body in elsewhere::BODIES {
@@ -115,8 +112,6 @@ pub fn simulated(lab: &Lab) -> Result<Option<Section>, SectionError> {
             outlines.rows.push(row(&format!("{body}, {points} points"), &all));
         }
     }
-    let panel = |series| Panel { y: "share of matches".to_owned(), series, limit: None };
-    let [mm, deg] = panels;
     Ok(Some(Section {
         title: "Against another simulator".to_owned(),
         text: vec![
@@ -127,11 +122,10 @@ pub fn simulated(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 .to_owned(),
         ],
         tables: vec![pictures, outlines],
-        plots: vec![lines(
+        plots: vec![distributions(
             "gvirtualxray.svg",
             "gVirtualXray's pictures: share of matches below an error",
-            "position error, mm (left), rotation error, degrees (right)",
-            &[panel(mm), panel(deg)],
+            panels,
         )?],
     }))
 }

@@ -68,7 +68,7 @@ fn disturbed(
 pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let views = biplane(90.0);
     let postures: Vec<_> =
-        (0..lab.count(40, 4)).map(|k| (k.to_string(), Posture::random(lab.seed + 2, k))).collect();
+        (0..lab.count(24, 4)).map(|k| (k.to_string(), Posture::random(lab.seed + 2, k))).collect();
     let mut table = Table {
         id: "sweeps".to_owned(),
         heading: "femoral component, 15,000 points".to_owned(),
@@ -95,6 +95,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         }
         let [a, b, c, d] = series;
         let panel = |y: &str, median, p95| Panel {
+            x: sweep.axis.to_owned(),
             y: y.to_owned(),
             series: vec![
                 Series { name: "median".to_owned(), points: median },
@@ -104,7 +105,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         };
         let panels = [panel("position, mm", a, b), panel("rotation, degrees", c, d)];
         let caption = format!("Error against {}", sweep.axis);
-        plots.push(lines(sweep.file, &caption, sweep.axis, &panels)?);
+        plots.push(lines(sweep.file, &caption, &panels)?);
         Ok::<(), SectionError>(())
     };
     let usual = Exposure::fluoroscopy();

@@ -218,7 +218,12 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     for (method, row) in sphere_at_thesis {
         geometry.rows.push(Row::ours(format!("sphere, {}", method.name()), row));
     }
-    let panel = Panel { y: "root mean square error, mm".to_owned(), series: by_tolerance, limit: None };
+    let panel = Panel {
+        x: "tolerance, minus its decimal logarithm".to_owned(),
+        y: "root mean square error, mm".to_owned(),
+        series: by_tolerance,
+        limit: None,
+    };
     Ok(Some(Section {
         title: "One view against two: Tables 5.3 to 5.5, which claim no accuracy".to_owned(),
         text: vec![
@@ -232,7 +237,6 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         plots: vec![lines(
             "table-5-3.svg",
             "Table 5.3: error of the sphere with one view against the tolerance",
-            "tolerance, minus its decimal logarithm",
             &[panel],
         )?],
     }))
