@@ -60,9 +60,6 @@ impl Lab {
     }
 
     /// Ideal outlines of a body in postures, straight from its solid.
-    ///
-    /// # Errors
-    /// None of its own; it shares the type of what makes frames from pictures.
     pub fn outlines(&self, body: Body, postures: &[(String, Posture)], views: &[TrueFluoroscope]) -> Frames {
         postures
             .par_iter()

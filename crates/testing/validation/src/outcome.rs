@@ -1,8 +1,10 @@
 //! What single starts of either method came to, in the thesis's terms.
 
+use std::collections::{BTreeMap, VecDeque};
+
 use biplane_artifact::{Curves, Verdict};
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{Curve, Point3, Pose, PoseError, Vector3};
+use biplane_geometry::{Curve, EdgePoint, Point3, Pose, PoseError, Vector2, Vector3};
 use biplane_optimisation::{BinghamParams, BinghamView, EdgeField, Evidence, assess, descend, match_body};
 use biplane_outline::{Outline, RimMesh, Sampling};
 use biplane_phantom::TrueFluoroscope;
@@ -222,7 +224,6 @@ fn outline_field(outline: &Outline) -> EdgeField {
 
 /// An outline of the product as curves in ideal pixels, linked into pieces where neighbouring samples follow each other.
 pub fn outline_curves(outline: &Outline) -> Curves {
-    use biplane_geometry::EdgePoint;
     let points: Vec<EdgePoint> = outline
         .points()
         .iter()
@@ -235,9 +236,9 @@ pub fn outline_curves(outline: &Outline) -> Curves {
 const FOLLOWS_PX: f64 = 2.0;
 
 /// Follows samples of contours from one to the nearest in its tangent's direction.
-fn linked(points: Vec<biplane_geometry::EdgePoint>) -> Vec<Curve> {
+fn linked(points: Vec<EdgePoint>) -> Vec<Curve> {
     let key = |v: f64| (v / FOLLOWS_PX).floor() as i64;
-    let mut cells: std::collections::BTreeMap<(i64, i64), Vec<usize>> = std::collections::BTreeMap::new();
+    let mut cells: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
     for (i, p) in points.iter().enumerate() {
         cells.entry((key(p.position.x), key(p.position.y))).or_default().push(i);
     }
@@ -245,7 +246,7 @@ fn linked(points: Vec<biplane_geometry::EdgePoint>) -> Vec<Curve> {
     // The free sample nearest to one, ahead of it along its contour (`way` +1) or behind it.
     let next = |from: usize, way: f64, used: &[bool]| {
         let p = &points[from];
-        let along = biplane_geometry::Vector2::new(-p.direction.y, p.direction.x) * way;
+        let along = Vector2::new(-p.direction.y, p.direction.x) * way;
         let (x, y) = (key(p.position.x), key(p.position.y));
         let mut best: Option<(f64, usize)> = None;
         for cell in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j))) {
@@ -266,7 +267,7 @@ fn linked(points: Vec<biplane_geometry::EdgePoint>) -> Vec<Curve> {
             continue;
         }
         used[first] = true;
-        let mut chain = std::collections::VecDeque::from([first]);
+        let mut chain = VecDeque::from([first]);
         for way in [1.0, -1.0] {
             let mut at = first;
             while let Some(other) = next(at, way, &used) {

@@ -25,7 +25,7 @@ const POINTS: usize = 15_000;
 /// Starts of a pose.
 const TEN: StartOffset = StartOffset { count: 10, ..STARTS };
 
-/// Leaves each view only the curves that a person would choose for the body.
+/// Leaves the thesis's method only the curves that a person would choose for the body; the default sees all edges.
 fn by_hand(mut scene: Scene) -> Scene {
     for frame in &mut scene.frames {
         for (curves, view) in frame.curves.iter_mut().zip(&frame.views) {
@@ -177,8 +177,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         text: vec![
             "X-ray pictures of the phantom (1024 x 1024, 8 bit, focal-spot and detector blur, scatter, heel, vignetting, \
              Poisson noise), of meshes of 200,000 points; models of 15,000 points. Two views at 90 degrees, calibration known, \
-             no distortion. Ten starts a pose, each exactly 6 mm and 6 degrees off. Curves are those of the stage `segment`, and \
-             each body is left with those within 4 px of its true outline, as a person chooses them in the thesis."
+             no distortion. Ten starts a pose, each exactly 6 mm and 6 degrees off. Curves are those of the stage `segment`. The \
+             default finds a body's edges among all of them; `bingham2006` is left with those within 4 px of the true outline, as \
+             a person chooses them in the thesis."
                 .to_owned(),
             "Table 4.5 moves a natural knee by known distances; an entry is how much farther than that three points of a bone, \
              30 mm from its centroid, are found to have moved. The bones' models are meshes of the analytic surface: there is no \

@@ -140,9 +140,9 @@ pub fn far(lab: &Lab) -> Result<Option<Section>, SectionError> {
     };
     for (name, pipeline, body, reference) in &SIMULATED[..2] {
         let mut scene = Scene::load(&lab.root.join(pipeline), body, &lab.root.join(reference))?;
-        // Every third frame: these searches use up all their starts.
+        // Few of the twelve frames: these searches use up all their starts.
         let frames = std::mem::take(&mut scene.frames);
-        scene.frames = frames.into_iter().step_by(lab.count(3, 12)).collect();
+        scene.frames = frames.into_iter().step_by(lab.count(4, 12)).collect();
         let draw = |truth: &_, centroid: &_, _| turned(truth, centroid);
         let all = outcomes(&scene, Method::Default, &lab::thesis_params(), &draw);
         let good: Vec<&Outcome> = all.iter().filter(|o| o.counts).collect();
