@@ -44,7 +44,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut positions = table("4.2", "Table 4.2: position, 15,000 points");
     let mut many = Table {
         id: "4.1-many".to_owned(),
-        heading: "random poses, the default".to_owned(),
+        heading: "ideal outlines, random poses".to_owned(),
         columns: distribution_columns(),
         rows: Vec::new(),
     };
