@@ -27,18 +27,14 @@ pub fn normal_vector(sigma: f64, random: &mut Xoshiro256PlusPlus) -> Vector3 {
 /// falls to 1/e in `correlation_px` (none for 0): a first-order autoregression, closed curves run through twice.
 pub fn noisy(curves: &Curves, sigma_px: f64, correlation_px: f64, random: &mut Xoshiro256PlusPlus) -> Curves {
     let moved = |curve: &Curve| {
-        let mut curve = curve.clone();
+        let (ideal, mut curve) = (&curve.points, curve.clone());
         let mut noise = normal(random);
         // The first time round only lets the end of a closed curve know of its start.
         let warm_up = if curve.closed { curve.points.len() } else { 0 };
         for index in 0..warm_up + curve.points.len() {
             let at = index % curve.points.len();
             let before = (at + curve.points.len() - 1) % curve.points.len();
-            let step = if index == 0 {
-                0.0
-            } else {
-                (curve.points[at].position - curve.points[before].position).norm()
-            };
+            let step = if index == 0 { 0.0 } else { (ideal[at].position - ideal[before].position).norm() };
             let kept = if correlation_px > 0.0 { (-step / correlation_px).exp() } else { 0.0 };
             noise = kept * noise + (1.0 - kept * kept).sqrt() * normal(random);
             if index >= warm_up {

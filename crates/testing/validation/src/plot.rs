@@ -106,6 +106,10 @@ fn draw_lines(area: &Area, panel: &Panel) -> Result<(), PlotError> {
     if finite.is_empty() || high <= low {
         return Ok(());
     }
+    // The legend goes where fewer points are.
+    let crowded = |within: fn(f64, f64) -> bool| {
+        finite.iter().filter(|p| within((p.0 - low) / (high - low), p.1 / top)).count()
+    };
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(38)
@@ -128,7 +132,10 @@ fn draw_lines(area: &Area, panel: &Panel) -> Result<(), PlotError> {
             .map_err(failed)?
             .label(&series.name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
-        chart.draw_series(points.into_iter().map(|p| Circle::new(p, 3, colour.filled()))).map_err(failed)?;
+        if !is_share {
+            let dots = points.into_iter().map(|p| Circle::new(p, 3, colour.filled()));
+            chart.draw_series(dots).map_err(failed)?;
+        }
     }
     if let Some(limit) = panel.limit {
         chart
@@ -139,7 +146,11 @@ fn draw_lines(area: &Area, panel: &Panel) -> Result<(), PlotError> {
     }
     chart
         .configure_series_labels()
-        .position(if is_share { SeriesLabelPosition::LowerRight } else { SeriesLabelPosition::UpperLeft })
+        .position(if crowded(|x, y| x < 0.5 && y > 0.5) > crowded(|x, y| x > 0.5 && y < 0.5) {
+            SeriesLabelPosition::LowerRight
+        } else {
+            SeriesLabelPosition::UpperLeft
+        })
         .background_style(WHITE.mix(0.8))
         .border_style(TRANSPARENT)
         .draw()
@@ -182,7 +193,7 @@ pub fn dots(file: &str, caption: &str, x: &str, series: &[&str], rows: &[Dots]) 
             .disable_y_mesh()
             .y_labels(0)
             .x_desc(x)
-            .x_label_formatter(&|v| format!("{}", (v * 1e6).round() / 1e6))
+            .x_label_formatter(&|v| if *v < 9e-4 { format!("{v:.0e}") } else { v.to_string() })
             .draw()
             .map_err(failed)?;
         for (index, row) in rows.iter().enumerate() {
@@ -262,9 +273,12 @@ pub fn cumulative(name: &str, values: &[f64]) -> Series {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let count = sorted.len() as f64;
-    let step = (sorted.len() / 40).max(1);
+    // Of many values every so many are drawn, and always the first and the last.
+    let step = (sorted.len() / 60).max(1);
     let picked = sorted.iter().enumerate().filter(|(i, _)| i % step == 0 || i + 1 == sorted.len());
-    Series { name: name.to_owned(), points: picked.map(|(i, v)| (*v, (i + 1) as f64 / count)).collect() }
+    let first = sorted.first().map(|v| (*v, 0.0));
+    let points = first.into_iter().chain(picked.map(|(i, v)| (*v, (i + 1) as f64 / count)));
+    Series { name: name.to_owned(), points: points.collect() }
 }
 
 #[cfg(test)]
