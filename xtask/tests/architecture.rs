@@ -19,7 +19,14 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-stage"],
     &["biplane-fluoroscope", "biplane-phantom"],
     &["biplane-outline"],
-    &["biplane-acquisition", "biplane-segmentation", "biplane-optimisation"],
+    &[
+        "biplane-acquisition",
+        "biplane-spots",
+        "biplane-distortion",
+        "biplane-environment",
+        "biplane-segmentation",
+        "biplane-optimisation",
+    ],
     &["biplane"],
     &["biplane-validation"],
     &["xtask"],
@@ -29,10 +36,13 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 7] = [
+const METHOD: [&str; 10] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
+    "crates/analysis/distortion",
+    "crates/analysis/environment",
     "crates/analysis/segmentation",
+    "crates/analysis/spots",
     "crates/matching/fluoroscope",
     "crates/matching/outline",
     "crates/matching/optimisation",

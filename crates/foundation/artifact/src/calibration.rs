@@ -33,7 +33,7 @@ pub struct Calibration {
 }
 
 /// Samples of the map from recorded to ideal pixels on a regular grid of recorded pixels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DistortionTable {
     /// Recorded pixel of the first sample.
     pub first_px: [f64; 2],
@@ -55,16 +55,21 @@ impl Content for Calibration {
         for v in source.iter().chain(matrix.iter().flatten()) {
             h.float(*v);
         }
-        h.unsigned(u64::from(distortion.is_some()));
-        if let Some(DistortionTable { first_px, step_px, count, ideal_px }) = distortion {
-            for v in first_px.iter().chain(step_px) {
-                h.float(*v);
-            }
-            h.unsigned(count[0] as u64).unsigned(count[1] as u64).unsigned(ideal_px.len() as u64);
-            for v in ideal_px.iter().flatten() {
-                h.float(*v);
-            }
-        }
+        feed_distortion(&mut h, distortion.as_ref());
         h.finish()
+    }
+}
+
+/// Feeds a distortion, or that there is none.
+pub(crate) fn feed_distortion(h: &mut ContentHasher, distortion: Option<&DistortionTable>) {
+    h.unsigned(u64::from(distortion.is_some()));
+    if let Some(DistortionTable { first_px, step_px, count, ideal_px }) = distortion {
+        for v in first_px.iter().chain(step_px) {
+            h.float(*v);
+        }
+        h.unsigned(count[0] as u64).unsigned(count[1] as u64).unsigned(ideal_px.len() as u64);
+        for v in ideal_px.iter().flatten() {
+            h.float(*v);
+        }
     }
 }

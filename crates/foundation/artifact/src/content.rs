@@ -135,6 +135,19 @@ pub(crate) fn hash_encoded<A: Artifact>(bytes: &[u8]) -> ContentHash {
     ContentHasher::new(A::KIND, A::SCHEMA).bytes(bytes).finish()
 }
 
+/// The bytes of a struct of numbers and texts.
+pub(crate) fn encode_json<A: serde::Serialize>(value: &A) -> Vec<u8> {
+    // Such a struct always has a JSON form.
+    let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
+    bytes.push(b'\n');
+    bytes
+}
+
+/// Back from [`encode_json`].
+pub(crate) fn decode_json<A: Content + serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<A, DecodeError> {
+    serde_json::from_slice(bytes).map_err(DecodeError::of::<A>)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,16 +7,26 @@
 mod calibration;
 mod content;
 mod curves;
+mod drawing;
+mod environment;
 mod frame;
 mod matched;
 mod model;
 mod npy;
 mod picture;
+mod plate;
+mod spots;
 
 pub use calibration::{Calibration, DistortionTable, PixelOrigin};
 pub use content::{Artifact, Content, ContentHash, ContentHasher, DecodeError};
 pub use curves::Curves;
+pub use drawing::Drawing;
+pub use environment::{
+    Bead, BeadClick, BeadClicks, BeadList, Detector, Environment, SeenBead, TriangulatedBead, ViewEnvironment,
+};
 pub use frame::Frame;
 pub use matched::{Match, PoseRecord, Verdict, ViewFit};
 pub use model::{ModelMesh, Start};
 pub use picture::Picture;
+pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};
+pub use spots::{Circle, Spot, Spots};

@@ -3,7 +3,7 @@
 use biplane_geometry::{Pose, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::content::hash_encoded;
+use crate::content::{decode_json, encode_json, hash_encoded};
 use crate::{Artifact, Content, ContentHash, DecodeError};
 
 /// Whether a pose can be used.
@@ -114,14 +114,11 @@ impl Artifact for Match {
     const EXTENSION: &'static str = "json";
 
     fn encode(&self) -> Vec<u8> {
-        // A struct of numbers and texts always has a JSON form.
-        let mut bytes = serde_json::to_vec_pretty(self).unwrap_or_default();
-        bytes.push(b'\n');
-        bytes
+        encode_json(self)
     }
 
     fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
-        serde_json::from_slice(bytes).map_err(DecodeError::of::<Self>)
+        decode_json(bytes)
     }
 }
 
