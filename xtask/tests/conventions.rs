@@ -156,7 +156,7 @@ fn the_first_pixel_has_its_centre_at_zero_and_edges_point_from_dark_to_bright() 
 
 #[test]
 fn the_example_studys_detector_is_read_as_its_simulator_describes_it() {
-    let path = root().join("fixtures/knee/calibration/fluoroscopes.json");
+    let path = root().join("fixtures/knee/truth/fluoroscopes.json");
     let file = json(&path);
     let pixel = file["pixel_mm"].as_f64().unwrap();
     for view in ["A", "B"] {
@@ -181,7 +181,7 @@ fn the_example_studys_detector_is_read_as_its_simulator_describes_it() {
 
 #[test]
 fn distortion_maps_recorded_to_ideal_pixels() {
-    let path = root().join("fixtures/knee/calibration/distortion_A.csv");
+    let path = root().join("fixtures/knee/truth/distortion_A.csv");
     let table = read_distortion_csv(&path).unwrap();
     let distortion = Distortion::from(&table);
     let text = std::fs::read_to_string(&path).unwrap();
@@ -198,7 +198,7 @@ fn distortion_maps_recorded_to_ideal_pixels() {
 
 #[test]
 fn edges_are_carried_into_ideal_pixels_with_their_direction() {
-    let table = read_distortion_csv(root().join("fixtures/knee/calibration/distortion_B.csv")).unwrap();
+    let table = read_distortion_csv(root().join("fixtures/knee/truth/distortion_B.csv")).unwrap();
     let distortion = Distortion::from(&table);
     let tangent = Vector2::new(0.6, 0.8);
     let direction = Vector2::new(0.8, -0.6);
