@@ -1,5 +1,16 @@
 //! The stage `spots`: the round spots of a calibration picture, to a fraction of a pixel.
+//!
+//! The round border of an intensifier is found and taken out ([`border`]); places that may be spots are maxima over place and scale
+//! ([`candidates`]); a soft-edged ellipse is fitted to the picture at each ([`fit`]), and what is no spot falls out ([`find`]).
 
+mod border;
+mod candidates;
+mod cells;
+mod find;
+mod fit;
+mod grey;
+mod profile;
 mod stage;
 
-pub use stage::{FindSpots, Look, SpotError, SpotInputs, SpotParams, SpotSettings, find_spots};
+pub use find::find_spots;
+pub use stage::{FindSpots, Look, SpotError, SpotInputs, SpotParams, SpotSettings};

@@ -5,6 +5,8 @@ use biplane_stage::{Context, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::find::find_spots;
+
 inputs! {
     /// One calibration picture.
     pub struct SpotInputs {
@@ -36,12 +38,13 @@ pub struct SpotParams {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SpotSettings {
-    /// Smallest radius of a spot, px.
-    #[schemars(range(min = 0.5))]
+    /// Smallest radius of a spot, px. Raise it where something small and round that is no spot is found.
+    #[schemars(range(min = 1.0))]
     pub min_radius_px: f64,
-    /// Largest radius of a spot, px.
+    /// Largest radius of a spot, px, at least the smallest. Raise it where beads are larger than that.
+    #[schemars(range(min = 1.0, max = 500.0))]
     pub max_radius_px: f64,
-    /// Least difference of a spot to its surroundings, grey levels.
+    /// Least difference of a spot to its surroundings, grey levels. Lower it where spots are faint and the picture is clean.
     #[schemars(range(min = 0.0))]
     pub min_contrast: f64,
 }
@@ -49,6 +52,24 @@ pub struct SpotSettings {
 impl Default for SpotSettings {
     fn default() -> Self {
         Self { min_radius_px: 1.5, max_radius_px: 40.0, min_contrast: 8.0 }
+    }
+}
+
+impl SpotSettings {
+    /// Checks that every parameter is in its range.
+    pub(crate) fn check(&self) -> Result<(), SpotError> {
+        let Self { min_radius_px, max_radius_px, min_contrast } = *self;
+        let is = |holds: bool, name: &'static str, value: f64, expected: &'static str| {
+            if holds { Ok(()) } else { Err(SpotError::Parameter { name, value, expected }) }
+        };
+        is((1.0..=500.0).contains(&min_radius_px), "min_radius_px", min_radius_px, "1 to 500 px")?;
+        is(
+            (min_radius_px..=500.0).contains(&max_radius_px),
+            "max_radius_px",
+            max_radius_px,
+            "min_radius_px to 500 px",
+        )?;
+        is((0.0..=255.0).contains(&min_contrast), "min_contrast", min_contrast, "0 to 255 grey levels")
     }
 }
 
@@ -64,6 +85,16 @@ pub enum SpotError {
         value: f64,
         /// What it may be.
         expected: &'static str,
+    },
+    /// A picture that does not hold what its size says.
+    #[error("a picture of {width} x {height} pixels with {samples} grey levels, expected one a pixel")]
+    Picture {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Grey levels that it has.
+        samples: usize,
     },
 }
 
@@ -82,20 +113,4 @@ impl Stage for FindSpots {
     fn run(inputs: &SpotInputs, params: &SpotParams, _: &Context) -> Result<Spots, SpotError> {
         find_spots(&inputs.frame, params)
     }
-}
-
-/// The round spots of a picture.
-///
-/// # Errors
-/// A parameter out of range.
-pub fn find_spots(frame: &Frame, params: &SpotParams) -> Result<Spots, SpotError> {
-    let SpotSettings { min_radius_px, .. } = params.settings;
-    if !(min_radius_px >= 0.5) {
-        return Err(SpotError::Parameter {
-            name: "min_radius_px",
-            value: min_radius_px,
-            expected: "0.5 px or more",
-        });
-    }
-    Ok(Spots { size: [frame.width, frame.height], spots: Vec::new(), border: None, warnings: Vec::new() })
 }
