@@ -37,7 +37,7 @@ pub(crate) fn border(grey: &Grey) -> Option<Circle> {
         [w - 1.0 - corner, h - 1.0 - corner],
     ];
     let outside = corners.iter().map(|c| median_around(grey, *c, corner)).fold(f64::INFINITY, f64::min);
-    if !(inside - outside > LEAST_STEP) {
+    if inside - outside < LEAST_STEP {
         return None;
     }
     let level = outside + 0.35 * (inside - outside);

@@ -1,18 +1,23 @@
-//! From a picture to its spots: border, candidates, a first fit of each by itself, a second one that knows its neighbours, and the
-//! rules by which a fit is a spot.
+//! From a picture to its spots: border, candidates, a first fit of each by itself, a second one that knows its neighbours and the light
+//! around, and the rules by which a fit is a spot.
 
-use biplane_artifact::{Circle, Frame, Spot, Spots};
+use biplane_artifact::{Frame, Spot, Spots};
 
 use crate::border::{border, mirrored_beyond};
 use crate::candidates::{Candidate, candidates};
 use crate::cells::Cells;
-use crate::fit::{Fit, Pixel, fit};
+use crate::fit::{Fit, fit};
 use crate::grey::Grey;
-use crate::profile::{COUNT, Parameters};
+use crate::ground::{Outside, Ridges, about_plane, unevenness};
+use crate::noise::Correlation;
+use crate::profile::{COUNT, Parameters, light_and_derivative};
+use crate::window::{Field, Round, Window};
 use crate::{Look, SpotError, SpotParams};
 
-/// How far inside the border a picture is whole, px.
-const BORDER_EDGE: f64 = 2.0;
+/// Spots on whose surroundings the noise is measured.
+const NOISE_WINDOWS: usize = 64;
+/// Unevenness of the light about a spot, in its contrast, from which on a plane does not do.
+const UNEVEN: f64 = 0.015;
 
 /// The round spots of a picture.
 ///
@@ -31,27 +36,10 @@ pub fn find_spots(frame: &Frame, params: &SpotParams) -> Result<Spots, SpotError
     let grey = Grey::of(frame);
     let border = border(&grey);
     let even = border.map_or_else(|| grey.clone(), |circle| mirrored_beyond(&grey, &circle));
-    let finder = Finder { grey: &grey, border, params, noise: grey.noise() };
+    let finder = Finder { field: Field { grey: &grey, border }, params, noise: grey.noise() };
     let mut spots = finder.spots(&even);
     spots.sort_by(|a, b| a.at_px[1].total_cmp(&b.at_px[1]).then(a.at_px[0].total_cmp(&b.at_px[0])));
     Ok(Spots { spots, border, ..empty })
-}
-
-/// A round thing of the picture: its middle and its radius, px.
-#[derive(Debug, Clone, Copy)]
-struct Round {
-    at: [f64; 2],
-    radius: f64,
-}
-
-impl Round {
-    fn holds(&self, x: f64, y: f64, margin: f64) -> bool {
-        (x - self.at[0]).powi(2) + (y - self.at[1]).powi(2) < (self.radius + margin).powi(2)
-    }
-
-    fn distance(&self, other: &Self) -> f64 {
-        (self.at[0] - other.at[0]).hypot(self.at[1] - other.at[1])
-    }
 }
 
 /// What a window has shown.
@@ -71,8 +59,7 @@ struct Found {
 }
 
 struct Finder<'a> {
-    grey: &'a Grey,
-    border: Option<Circle>,
+    field: Field<'a>,
     params: &'a SpotParams,
     noise: f64,
 }
@@ -83,44 +70,46 @@ impl Finder<'_> {
         let least = (0.5 * settings.min_contrast).max(3.0 * self.noise).max(0.5);
         let radii = [settings.min_radius_px, settings.max_radius_px];
         let mut places = candidates(even, self.params.look, radii, least);
-        places.retain(|c| self.depth(c.at) > 0.0);
-        let first: Vec<Found> = {
-            let rounds: Vec<Round> = places.iter().map(|c| Round { at: c.at, radius: c.radius }).collect();
-            let cells = self.cells(&rounds);
-            let one = |(i, c): (usize, &Candidate)| {
-                let start = self.start(c);
-                let found = self.fitted(i, &rounds, &cells, 4.0, &start, 12)?;
-                self.is_spot(&found).then_some(found)
-            };
-            places.iter().enumerate().filter_map(one).collect()
+        places.retain(|c| self.field.depth(c.at) > 0.0);
+
+        let near = Neighbours::of(places.iter().map(|c| Round { at: c.at, radius: c.radius }), &self.field);
+        let one = |(i, c): (usize, &Candidate)| {
+            let own = near.rounds[i];
+            let reach = own.radius + (0.25 * own.radius).max(4.0);
+            let window = self.field.window(&own, reach, &near.about(i, reach));
+            let fit = fit(&window.pixels, &self.start(c), 12)?;
+            let found = self.found(&own, &window, &fit, None);
+            self.is_spot(&found).then_some(found)
         };
-        let first = distinct(first);
-        let rounds: Vec<Round> = first.iter().map(|f| f.round).collect();
-        let cells = self.cells(&rounds);
-        let second = first.iter().enumerate().filter_map(|(i, f)| {
-            let found = self.fitted(i, &rounds, &cells, (3.5 * f.blur).max(4.0), &f.parameters, 30)?;
-            self.is_spot(&found).then(|| self.spot(i, &found, &rounds, &cells))
-        });
-        second.collect()
-    }
+        let first = distinct(places.iter().enumerate().filter_map(one).collect());
 
-    fn cells(&self, rounds: &[Round]) -> Cells {
-        let mut cells = Cells::new([self.grey.width, self.grey.height]);
-        rounds.iter().enumerate().for_each(|(i, r)| cells.add(r.at, i));
-        cells
-    }
-
-    /// How far within the border of picture and intensifier a place is, px.
-    fn depth(&self, at: [f64; 2]) -> f64 {
-        let [w, h] = [self.grey.width, self.grey.height].map(|n| n as f64);
-        let of_picture = (at[0] + 0.5).min(at[1] + 0.5).min(w - 0.5 - at[0]).min(h - 0.5 - at[1]);
-        self.border.map_or(of_picture, |c| {
-            of_picture.min(c.radius_px - (at[0] - c.centre_px[0]).hypot(at[1] - c.centre_px[1]))
-        })
+        let near = Neighbours::of(first.iter().map(|f| f.round), &self.field);
+        let correlation = self.correlation(&first, &near);
+        let again = |(i, f): (usize, &Found)| {
+            let own = near.rounds[i];
+            let reach = own.radius + (3.5 * f.blur).max(0.25 * own.radius).max(4.0);
+            let others = near.about(i, reach);
+            let mut window = self.field.window(&own, reach, &others);
+            if let Some(ridges) = self.ridges(f, &near.about(i, ground_reach(f) * 1.5)) {
+                for px in &mut window.pixels {
+                    px.ground = ridges.light(px.x * own.radius, px.y * own.radius).max(1.0);
+                }
+            }
+            let mut start = f.parameters;
+            if window.pixels.iter().any(|px| px.ground != 1.0) {
+                (start[8], start[9], start[10]) = (1.0, 0.0, 0.0);
+            }
+            let fit = fit(&window.pixels, &start, 30)?;
+            let found = self.found(&own, &window, &fit, Some(&correlation));
+            self.is_spot(&found).then_some(found)
+        };
+        let second = distinct(first.iter().enumerate().filter_map(again).collect());
+        let near = Neighbours::of(second.iter().map(|f| f.round), &self.field);
+        second.iter().enumerate().map(|(i, f)| self.spot(i, f, &near)).collect()
     }
 
     fn start(&self, c: &Candidate) -> Parameters {
-        let ground = self.grey.at(c.at[0], c.at[1]);
+        let ground = self.field.grey.at(c.at[0], c.at[1]);
         let contrast = match self.params.look {
             Look::Bright => c.contrast,
             Look::Dark => -c.contrast,
@@ -129,68 +118,89 @@ impl Finder<'_> {
         Parameters::from([0.0, 0.0, 1.0, 0.0, 1.0, 2.5, contrast / ground, 0.0, ground, 0.0, 0.0])
     }
 
-    /// Fits the profile in the window of one round thing, without the pixels of the others.
-    fn fitted(
-        &self,
-        number: usize,
-        rounds: &[Round],
-        cells: &Cells,
-        margin: f64,
-        start: &Parameters,
-        steps: usize,
-    ) -> Option<Found> {
-        let own = rounds[number];
-        let reach = own.radius + margin.max(0.25 * own.radius);
-        let largest = self.params.settings.max_radius_px;
-        let others: Vec<Round> = cells
-            .near(own.at, reach + largest)
-            .filter(|&k| k != number)
-            .map(|k| rounds[k])
-            .filter(|o| own.distance(o) < reach + o.radius + 3.0)
-            .collect();
-        let pixels = self.window(&own, reach, &others);
-        let fit = fit(&pixels, start, steps)?;
-        Some(self.found(&own, &pixels, &fit))
+    /// Pixels of the light around a spot.
+    fn outside(&self, f: &Found, others: &[Round]) -> Window {
+        let mut window = self.field.window(&f.round, ground_reach(f), others);
+        let edge = 1.0 + 3.0 * f.blur / f.round.radius;
+        let keep: Vec<bool> =
+            window.pixels.iter().map(|px| px.x.hypot(px.y) > edge * f.elongation.sqrt()).collect();
+        let mut kept = keep.iter();
+        window.pixels.retain(|_| kept.next() == Some(&true));
+        let mut kept = keep.iter();
+        window.places.retain(|_| kept.next() == Some(&true));
+        window
     }
 
-    fn window(&self, own: &Round, reach: f64, others: &[Round]) -> Vec<Pixel> {
-        let [cx, cy] = own.at;
-        let range = |c: f64, n: usize| {
-            (c - reach).ceil().max(0.0) as usize..((c + reach).floor() + 1.0).clamp(0.0, n as f64) as usize
-        };
-        let rim = self.border.map(|c| (c.centre_px, c.radius_px - BORDER_EDGE));
-        let mut pixels = Vec::with_capacity((4.0 * reach * reach) as usize);
-        for j in range(cy, self.grey.height) {
-            let y = j as f64;
-            let row = &self.grey.samples[j * self.grey.width..];
-            for i in range(cx, self.grey.width) {
-                let x = i as f64;
-                if (x - cx).powi(2) + (y - cy).powi(2) > reach * reach
-                    || rim.is_some_and(|(c, r)| (x - c[0]).powi(2) + (y - c[1]).powi(2) > r * r)
-                    || others.iter().any(|o| o.holds(x, y, 2.5))
-                {
-                    continue;
-                }
-                let value = f64::from(row[i]);
-                pixels.push(Pixel { x: (x - cx) / own.radius, y: (y - cy) / own.radius, value });
-            }
+    /// The light around a spot where it is not that of a plane but changes across one direction.
+    fn ridges(&self, f: &Found, others: &[Round]) -> Option<Ridges> {
+        let window = self.outside(f, others);
+        let r = f.round.radius;
+        let outside: Vec<Outside> = window.pixels.iter().map(|px| [px.x * r, px.y * r, px.value]).collect();
+        let uneven = unevenness(&outside)?;
+        if uneven < UNEVEN * f.contrast || uneven < 2.0 * self.noise {
+            return None;
         }
-        pixels
+        let mut raster = vec![f64::NAN; window.size];
+        window.places.iter().zip(&window.pixels).for_each(|(&p, px)| raster[p] = px.value);
+        let difference = |p: usize, by: usize| {
+            let slope = (raster.get(p + by)? - raster.get(p.checked_sub(by)?)?) / 2.0;
+            slope.is_finite().then_some(slope)
+        };
+        let gradients: Vec<[f64; 2]> = window
+            .places
+            .iter()
+            .filter_map(|&p| Some([difference(p, 1)?, difference(p, window.stride)?]))
+            .collect();
+        let ridges = Ridges::fitted(&outside, &gradients, ground_reach(f))?;
+        (ridges.unevenness(&outside) < 0.7 * uneven).then_some(ridges)
     }
 
-    fn found(&self, own: &Round, pixels: &[Pixel], fit: &Fit) -> Found {
+    /// How noise goes together, from the even light around some spots.
+    fn correlation(&self, found: &[Found], near: &Neighbours) -> Correlation {
+        let step = found.len().div_ceil(NOISE_WINDOWS).max(1);
+        let mut windows: Vec<(f64, Window, Vec<f64>)> = (0..found.len())
+            .step_by(step)
+            .filter_map(|i| {
+                let f = &found[i];
+                let window = self.outside(f, &near.about(i, ground_reach(f)));
+                let outside: Vec<Outside> = window.pixels.iter().map(|px| [px.x, px.y, px.value]).collect();
+                let residuals = about_plane(&outside)?;
+                let variance = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64;
+                Some((variance, window, residuals))
+            })
+            .collect();
+        // The more even half.
+        windows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        windows.truncate(windows.len().div_ceil(2));
+        Correlation::measured(windows.iter().map(|(_, window, residuals)| (window, &residuals[..])))
+    }
+
+    fn found(&self, own: &Round, window: &Window, fit: &Fit, correlation: Option<&Correlation>) -> Found {
         let p = &fit.parameters;
+        let pixels = &window.pixels;
         let scale = own.radius;
         let determinant = p[2] * p[4] - p[3] * p[3];
         let radius = scale / determinant.sqrt();
         // Eigenvalues of M: the inverse of the axes.
         let (mean, half) = ((p[2] + p[4]) / 2.0, ((p[2] - p[4]) / 2.0).hypot(p[3]));
-        let ground = p[8] + p[9] * p[0] + p[10] * p[1];
         let n = pixels.len() as f64;
         let average = pixels.iter().map(|px| px.value).sum::<f64>() / n;
         let spread: f64 = pixels.iter().map(|px| (px.value - average).powi(2)).sum();
+        let light = pixels.iter().map(|px| px.ground).sum::<f64>() / n;
+        let ground = (p[8] + p[9] * p[0] + p[10] * p[1]) * light;
         let variance = fit.squares / (n - COUNT as f64);
-        let sigma = (variance * (fit.inverse[(0, 0)] + fit.inverse[(1, 1)]) / 2.0).sqrt() * scale;
+        let sigma = correlation.map_or(0.0, |correlation| {
+            // The weight of each pixel in a coordinate of the centre.
+            let weights = |axis: usize| {
+                pixels.iter().map(move |px| {
+                    let (_, row) = light_and_derivative(p, px.x, px.y);
+                    let row = Parameters::from(row) * px.ground;
+                    fit.inverse.row(axis).transpose().dot(&row)
+                })
+            };
+            let both = correlation.variance(window, weights(0)) + correlation.variance(window, weights(1));
+            (variance * both / 2.0).sqrt() * scale
+        });
         let mut parameters = *p;
         // About the new middle, in new radii.
         let grow = radius / scale;
@@ -223,16 +233,13 @@ impl Finder<'_> {
             && f.explained > 0.8
             && f.elongation < 2.0
             && f.residual < 0.12 * f.contrast
-            && self.depth(f.round.at) > 0.0
+            && self.field.depth(f.round.at) > 0.0
     }
 
-    fn spot(&self, number: usize, f: &Found, rounds: &[Round], cells: &Cells) -> Spot {
+    fn spot(&self, number: usize, f: &Found, near: &Neighbours) -> Spot {
         let edge = f.round.radius * f.elongation.sqrt();
-        let largest = self.params.settings.max_radius_px;
-        let meets = cells
-            .near(f.round.at, edge + largest + 2.0)
-            .any(|k| k != number && f.round.distance(&rounds[k]) < edge + rounds[k].radius + 1.0);
-        let cut = meets || self.depth(f.round.at) < edge + f.blur.min(1.5) || f.elongation > 1.35;
+        let meets = !near.about(number, edge + 1.0).is_empty();
+        let cut = meets || self.field.depth(f.round.at) < edge + f.blur.min(1.5) || f.elongation > 1.35;
         Spot {
             at_px: f.round.at,
             radius_px: f.round.radius,
@@ -244,12 +251,41 @@ impl Finder<'_> {
     }
 }
 
+/// How far about a spot its light is looked at, px.
+fn ground_reach(f: &Found) -> f64 {
+    1.5 * f.round.radius + 3.0 * f.blur + 6.0
+}
+
+/// Round things by place.
+struct Neighbours {
+    rounds: Vec<Round>,
+    cells: Cells,
+    largest: f64,
+}
+
+impl Neighbours {
+    fn of(rounds: impl Iterator<Item = Round>, field: &Field<'_>) -> Self {
+        let rounds: Vec<Round> = rounds.collect();
+        let mut cells = Cells::new([field.grey.width, field.grey.height]);
+        rounds.iter().enumerate().for_each(|(i, r)| cells.add(r.at, i));
+        let largest = rounds.iter().map(|r| r.radius).fold(0.0, f64::max);
+        Self { rounds, cells, largest }
+    }
+
+    /// Those that come within `reach` of the middle of one.
+    fn about(&self, number: usize, reach: f64) -> Vec<Round> {
+        let own = self.rounds[number];
+        let others = self.cells.near(own.at, reach + self.largest).filter(|&k| k != number);
+        others.map(|k| self.rounds[k]).filter(|o| own.distance(o) < reach + o.radius).collect()
+    }
+}
+
 /// Those whose middles lie in none that explains its window better.
 fn distinct(mut found: Vec<Found>) -> Vec<Found> {
     found.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     let mut kept: Vec<Found> = Vec::new();
     for f in found {
-        if kept.iter().all(|k| k.round.distance(&f.round) > 0.7 * k.round.radius.max(f.round.radius)) {
+        if kept.iter().all(|k| k.round.distance(&f.round) > 0.9 * k.round.radius.max(f.round.radius)) {
             kept.push(f);
         }
     }

@@ -18,6 +18,8 @@ pub(crate) struct Pixel {
     pub y: f64,
     /// Grey level.
     pub value: f64,
+    /// Light that is not the profile's own, by which it is multiplied; 1 for none.
+    pub ground: f64,
 }
 
 /// A fitted profile.
@@ -40,7 +42,7 @@ fn is_profile(p: &Parameters) -> bool {
 }
 
 fn squares(pixels: &[Pixel], p: &Parameters) -> f64 {
-    pixels.iter().map(|px| (px.value - light(p, px.x, px.y)).powi(2)).sum()
+    pixels.iter().map(|px| (px.value - px.ground * light(p, px.x, px.y)).powi(2)).sum()
 }
 
 /// Fits from a start; none where there are too few pixels or it leads nowhere.
@@ -90,8 +92,9 @@ fn normal_equations(pixels: &[Pixel], p: &Parameters) -> (SMatrix<f64, COUNT, CO
     let mut lower = [[0.0_f64; COUNT]; COUNT];
     let mut right = [0.0_f64; COUNT];
     for px in pixels {
-        let (value, row) = light_and_derivative(p, px.x, px.y);
-        let residual = px.value - value;
+        let (value, mut row) = light_and_derivative(p, px.x, px.y);
+        row.iter_mut().for_each(|d| *d *= px.ground);
+        let residual = px.value - px.ground * value;
         for i in 0..COUNT {
             right[i] += row[i] * residual;
             for j in 0..=i {

@@ -9,8 +9,11 @@ mod cells;
 mod find;
 mod fit;
 mod grey;
+mod ground;
+mod noise;
 mod profile;
 mod stage;
+mod window;
 
 pub use find::find_spots;
 pub use stage::{FindSpots, Look, SpotError, SpotInputs, SpotParams, SpotSettings};
