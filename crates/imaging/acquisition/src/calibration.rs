@@ -3,6 +3,7 @@
 //! Whatever the file's convention, what comes out counts pixels from the centre of the first one, and its third row is
 //! the depth in mm along the detector's normal (see [`Calibration`]). Files are told apart by what they hold.
 
+mod columns;
 mod distortion;
 mod mayacam;
 mod plane;
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use biplane_artifact::{Calibration, PixelOrigin};
 
+pub(crate) use columns::{Lengths, Table, fields, lines};
 pub(crate) use distortion::is_distortion_csv;
 pub use distortion::read_distortion_csv;
 pub use mayacam::read_mayacam2;
@@ -33,7 +35,7 @@ pub enum CalibrationError {
         source: std::io::Error,
     },
     /// Not a text file of sensible length.
-    #[error("{} is not a calibration file: {what}", path.display())]
+    #[error("{} is not a text file as calibrations are: {what}", path.display())]
     NotText {
         /// The file.
         path: PathBuf,
@@ -162,7 +164,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, CalibrationError> {
 }
 
 /// The start of a line, in quotes, as a message can show it.
-fn quote(line: &str) -> String {
+pub(crate) fn quote(line: &str) -> String {
     let line = line.trim_end();
     let short: String = line.chars().take(60).collect();
     if line.is_empty() {

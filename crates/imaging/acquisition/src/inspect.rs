@@ -6,9 +6,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use biplane_artifact::{Calibration, DistortionTable, Frame, PixelOrigin};
+use biplane_artifact::{Calibration, DistortionTable, Frame, PixelOrigin, PlatePattern};
 use nalgebra::{Matrix3, Vector3};
 
+use crate::beads::{BeadFile, BeadFormat, read_bead_list};
 use crate::calibration::{
     CalibrationError, CalibrationFormat, is_distortion_csv, plane_views, read_calibration,
     read_distortion_csv, read_text,
@@ -16,6 +17,7 @@ use crate::calibration::{
 use crate::frames::{FramesError, list_frames};
 use crate::images::{ImageError, ImageFile, ImageFormat, ImageInfo};
 use crate::meshes::{LengthUnit, MeshFile, MeshFileError, check_size, is_stl, read_unscaled};
+use crate::plates::{is_plate_list, read_plate_list};
 
 /// What a file holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,7 +63,7 @@ pub enum InspectError {
     /// None of the kinds known.
     #[error(
         "{} is none of the files this program reads: images (PNG, TIFF, DICOM, JPEG, BMP), calibrations (MayaCam 2.0, \
-         detector plane as JSON, distortion as CSV), meshes (STL)", path.display()
+         detector plane as JSON, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL)", path.display()
     )]
     Unknown {
         /// The file.
@@ -108,7 +110,11 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
             Some(CalibrationFormat::MayaCam2) => maya_cam(path),
             Some(CalibrationFormat::PlaneJson) => planes(path, &text),
             None if is_distortion_csv(&text) => Ok(distortion(&read_distortion_csv(path)?)),
-            None => Err(unknown()),
+            None if is_plate_list(&text) => Ok(plate(&read_plate_list(path)?)),
+            None => match BeadFormat::of_text(&text) {
+                Some(format) => Ok(beads(format, &read_bead_list(path, LengthUnit::Millimetres)?)),
+                None => Err(unknown()),
+            },
         },
         Err(CalibrationError::Io { source, .. }) => Err(io(source)),
         // Not text, so the last chance is a binary mesh, whose reader says what is wrong with it.
@@ -235,6 +241,63 @@ fn distortion(table: &DistortionTable) -> Description {
     d.line("largest shift", format!("{:.2} px", moved.fold(0.0, f64::max)));
     d.line("pixel origin", "centre of the first pixel at (0, 0)");
     d
+}
+
+fn plate(pattern: &PlatePattern) -> Description {
+    let mut d = Description::new("list of a plate's holes (CSV)");
+    if let PlatePattern::List(spots) = pattern {
+        d.line("holes", spots.len().to_string());
+        let reach = spots.iter().map(|s| s.at_mm[0].hypot(s.at_mm[1])).fold(0.0, f64::max);
+        d.line("farthest from the plate's origin", format!("{reach:.3} mm"));
+        d.line("radii", radii(spots.iter().map(|s| s.radius_mm)));
+    }
+    d
+}
+
+fn beads(format: BeadFormat, file: &BeadFile) -> Description {
+    let BeadFile { list, bright, notes } = file;
+    let mut d = Description::new(match format {
+        BeadFormat::Csv => "list of a frame's beads (CSV)",
+        BeadFormat::XmaLabCube => "list of a frame's beads, cube file of XMALab",
+    });
+    d.line("beads", list.0.len().to_string());
+    let extent = [0, 1, 2].map(|axis| {
+        let values = list.0.iter().map(|b| b.at_mm[axis]);
+        let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+        high - low
+    });
+    d.line("size", format!("{:.3} x {:.3} x {:.3} mm", extent[0], extent[1], extent[2]));
+    d.line("radii", radii(list.0.iter().map(|b| b.radius_mm)));
+    let marks: Vec<&str> = list.0.iter().filter(|b| b.mark).map(|b| b.name.as_str()).collect();
+    d.line("marks", if marks.is_empty() { "none".to_owned() } else { marks.join(", ") });
+    if let Some(bright) = bright {
+        d.line("in pictures", if *bright { "brighter than what is around them" } else { "dark" });
+    }
+    d.line("frame", "the laboratory's, if the fluoroscopes are found from it");
+    for note in notes {
+        d.line("note", note);
+    }
+    d
+}
+
+/// The radii of a list, and how many have each.
+fn radii(radii: impl Iterator<Item = Option<f64>>) -> String {
+    let mut counts: Vec<(Option<f64>, usize)> = Vec::new();
+    for radius in radii {
+        match counts.iter_mut().find(|(r, _)| *r == radius) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((radius, 1)),
+        }
+        if counts.len() > 8 {
+            return "more than eight different ones".to_owned();
+        }
+    }
+    counts.sort_by(|a, b| b.1.cmp(&a.1));
+    let words = counts.iter().map(|(radius, count)| match radius {
+        Some(radius) => format!("{count} of {radius} mm"),
+        None => format!("{count} not stated"),
+    });
+    words.collect::<Vec<_>>().join(", ")
 }
 
 fn mesh(path: &Path) -> Result<Description, InspectError> {

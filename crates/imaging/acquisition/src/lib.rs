@@ -6,8 +6,11 @@
 //! it. Of a DICOM header only what describes the pixels is kept: no value that names a patient is stored, reported or
 //! logged.
 
+pub mod beads;
 pub mod calibration;
 pub mod frames;
 pub mod images;
 pub mod inspect;
 pub mod meshes;
+mod places;
+pub mod plates;
