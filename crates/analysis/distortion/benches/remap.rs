@@ -1,0 +1,3 @@
+//! How long the correction of a picture takes.
+
+fn main() {}
