@@ -18,6 +18,8 @@ use crate::{Look, SpotError, SpotParams};
 const NOISE_WINDOWS: usize = 64;
 /// Unevenness of the light about a spot, in its contrast, from which on a plane does not do.
 const UNEVEN: f64 = 0.015;
+/// Least share of the noise that is left in residuals.
+const LEAST_LEFT: f64 = 0.2;
 
 /// The round spots of a picture.
 ///
@@ -72,16 +74,7 @@ impl Finder<'_> {
         let mut places = candidates(even, self.params.look, radii, least);
         places.retain(|c| self.field.depth(c.at) > 0.0);
 
-        let near = Neighbours::of(places.iter().map(|c| Round { at: c.at, radius: c.radius }), &self.field);
-        let one = |(i, c): (usize, &Candidate)| {
-            let own = near.rounds[i];
-            let reach = own.radius + (0.25 * own.radius).max(4.0);
-            let window = self.field.window(&own, reach, &near.about(i, reach));
-            let fit = fit(&window.pixels, &self.start(c), 12)?;
-            let found = self.found(&own, &window, &fit, None);
-            self.is_spot(&found).then_some(found)
-        };
-        let first = distinct(places.iter().enumerate().filter_map(one).collect());
+        let first = distinct(self.alone(&places));
 
         let near = Neighbours::of(first.iter().map(|f| f.round), &self.field);
         let correlation = self.correlation(&first, &near);
@@ -106,6 +99,38 @@ impl Finder<'_> {
         let second = distinct(first.iter().enumerate().filter_map(again).collect());
         let near = Neighbours::of(second.iter().map(|f| f.round), &self.field);
         second.iter().enumerate().map(|(i, f)| self.spot(i, f, &near)).collect()
+    }
+
+    /// A first fit of each candidate, the strongest first. The rim of a large spot has corners that are candidates too: those that lie in a
+    /// spot that was found are none, and none counts as a neighbour of one that is twice as strong.
+    fn alone(&self, places: &[Candidate]) -> Vec<Found> {
+        let mut near =
+            Neighbours::of(places.iter().map(|c| Round { at: c.at, radius: c.radius }), &self.field);
+        let mut is_taken = vec![false; places.len()];
+        let mut all = Vec::new();
+        for (i, c) in places.iter().enumerate() {
+            if is_taken[i] {
+                continue;
+            }
+            let own = near.rounds[i];
+            let reach = own.radius + (0.25 * own.radius).max(4.0);
+            let others =
+                near.numbers(i, reach).filter(|&k| !is_taken[k] && places[k].contrast > 0.5 * c.contrast);
+            let others: Vec<Round> = others.map(|k| near.rounds[k]).collect();
+            let window = self.field.window(&own, reach, &others);
+            let found =
+                fit(&window.pixels, &self.start(c), 12).map(|fit| self.found(&own, &window, &fit, None));
+            if let Some(found) = found.filter(|f| self.is_spot(f)) {
+                near.rounds[i] = found.round;
+                let within = near.numbers(i, found.round.radius + 1.0);
+                let within: Vec<usize> = within
+                    .filter(|&k| k > i && near.rounds[k].distance(&found.round) < found.round.radius + 1.0)
+                    .collect();
+                within.into_iter().for_each(|k| is_taken[k] = true);
+                all.push(found);
+            }
+        }
+        all
     }
 
     fn start(&self, c: &Candidate) -> Parameters {
@@ -189,18 +214,7 @@ impl Finder<'_> {
         let light = pixels.iter().map(|px| px.ground).sum::<f64>() / n;
         let ground = (p[8] + p[9] * p[0] + p[10] * p[1]) * light;
         let variance = fit.squares / (n - COUNT as f64);
-        let sigma = correlation.map_or(0.0, |correlation| {
-            // The weight of each pixel in a coordinate of the centre.
-            let weights = |axis: usize| {
-                pixels.iter().map(move |px| {
-                    let (_, row) = light_and_derivative(p, px.x, px.y);
-                    let row = Parameters::from(row) * px.ground;
-                    fit.inverse.row(axis).transpose().dot(&row)
-                })
-            };
-            let both = correlation.variance(window, weights(0)) + correlation.variance(window, weights(1));
-            (variance * both / 2.0).sqrt() * scale
-        });
+        let sigma = correlation.map_or(0.0, |c| spread_of_centre(window, fit, c) * scale);
         let mut parameters = *p;
         // About the new middle, in new radii.
         let grow = radius / scale;
@@ -251,6 +265,33 @@ impl Finder<'_> {
     }
 }
 
+/// Standard deviation of a coordinate of the fitted centre, radii of the window.
+///
+/// The size of the noise is that of the residuals where they move the centre, at the spot's edge, where a picture may have more of it than
+/// in even light. The fit takes a share of the noise out of the residuals: `leverage` of independent noise, and more of noise that goes
+/// together, by about the factor by which that moves the centre more.
+fn spread_of_centre(window: &Window, fit: &Fit, correlation: &Correlation) -> f64 {
+    // The weight of each pixel in both coordinates of the centre.
+    let mut weights = [Vec::with_capacity(window.pixels.len()), Vec::with_capacity(window.pixels.len())];
+    let (mut independent, mut squares, mut taken) = (0.0, 0.0, 0.0);
+    for px in &window.pixels {
+        let (light, row) = light_and_derivative(&fit.parameters, px.x, px.y);
+        let row = Parameters::from(row) * px.ground;
+        let solved = fit.inverse * row;
+        let weight = solved[0] * solved[0] + solved[1] * solved[1];
+        let leverage = row.dot(&solved);
+        independent += weight;
+        squares += weight * (px.value - px.ground * light).powi(2);
+        taken += weight * leverage;
+        weights[0].push(solved[0]);
+        weights[1].push(solved[1]);
+    }
+    let [x, y] = weights.map(|w| correlation.variance(window, w.into_iter()));
+    let more = (x + y) / independent.max(1e-300);
+    let left = (independent - more * taken).max(LEAST_LEFT * independent);
+    (squares / left.max(1e-300) * (x + y) / 2.0).sqrt()
+}
+
 /// How far about a spot its light is looked at, px.
 fn ground_reach(f: &Found) -> f64 {
     1.5 * f.round.radius + 3.0 * f.blur + 6.0
@@ -272,11 +313,16 @@ impl Neighbours {
         Self { rounds, cells, largest }
     }
 
+    /// Numbers of those that come within `reach` of the middle of one.
+    fn numbers(&self, number: usize, reach: f64) -> impl Iterator<Item = usize> + '_ {
+        let own = self.rounds[number];
+        let others = self.cells.near(own.at, reach + self.largest).filter(move |&k| k != number);
+        others.filter(move |&k| own.distance(&self.rounds[k]) < reach + self.rounds[k].radius)
+    }
+
     /// Those that come within `reach` of the middle of one.
     fn about(&self, number: usize, reach: f64) -> Vec<Round> {
-        let own = self.rounds[number];
-        let others = self.cells.near(own.at, reach + self.largest).filter(|&k| k != number);
-        others.map(|k| self.rounds[k]).filter(|o| own.distance(o) < reach + o.radius).collect()
+        self.numbers(number, reach).map(|k| self.rounds[k]).collect()
     }
 }
 
