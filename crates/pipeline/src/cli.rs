@@ -320,7 +320,7 @@ fn run_command(study: Study, threads: usize) -> Ended {
     stop_on_interrupt(&context);
     let (study, outcome) = run(study, threads, &context).map_err(|error| {
         let end = match &error {
-            RunError::Inputs(_) => End::BadInput,
+            RunError::Inputs(_) | RunError::Calibration(_) => End::BadInput,
             RunError::Stopped { .. } => End::Stopped,
             _ => End::Internal,
         };
@@ -345,9 +345,39 @@ fn stop_on_interrupt(context: &Context) {
     }
 }
 
+/// How good the calibration from pictures is, in a line a view; nothing where calibrations come from files.
+fn calibration_line(outcome: &Outcome) -> String {
+    let calibrated = &outcome.calibration;
+    let Some(environment) = &calibrated.environment else { return String::new() };
+    let mut text = format!("Calibration: {}", calibrated.verdict().word());
+    if let Some(angle) = environment.angle_deg {
+        text += &format!(", views {angle:.1} degrees apart");
+    }
+    if let Some(mm) = environment.triangulation_rms_mm {
+        text += &format!(", beads found again to {mm:.3} mm");
+    }
+    text += "\n";
+    for (view, plate) in environment.views.iter().zip(&calibrated.plates) {
+        let used = view.beads.iter().filter(|b| b.used).count();
+        text += &format!("  {}: ", view.view);
+        if let Some(fit) = plate {
+            let held_out = fit.models.iter().find(|m| m.name == fit.model).map(|m| m.held_out_rms_px);
+            let holes = fit.matched.iter().filter(|m| m.used).count();
+            let left = held_out.map_or(String::new(), |px| format!(", {px:.3} px left of {:.2}", fit.before_rms_px));
+            text += &format!("{holes} holes, {}{left}; ", fit.model);
+        }
+        text += &format!(
+            "{used} beads to {:.3} px, source to detector {:.1} mm\n",
+            view.reprojection_rms_px, view.source_to_detector_mm
+        );
+    }
+    text + "\n"
+}
+
 /// What a run says at its end.
 fn closing(study: &Study, outcome: &Outcome) -> String {
-    let mut text = summary::table(&summary::of_outcome(study, outcome));
+    let mut text = calibration_line(outcome);
+    text += &summary::table(&summary::of_outcome(study, outcome));
     let cached: usize = outcome.steps.iter().map(|(_, c)| c.cached).sum();
     let ran: usize = outcome.steps.iter().map(|(_, c)| c.ran).sum();
     let [good, doubtful, failed] = outcome.verdicts();
@@ -379,6 +409,9 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
         slashes(shown.as_deref().unwrap_or(&path))
     };
     text += &format!("\nPoses    {}\n", at("poses.csv"));
+    if !outcome.calibration.drawings.is_empty() {
+        text += &format!("Calibration {}\n", at("calibration"));
+    }
     if outcome.frames.iter().any(|f| !f.overlays.is_empty()) {
         text += &format!("Overlays {}\n", at("overlays"));
     }
@@ -407,7 +440,7 @@ fn status(study: &Study) -> Ended {
 }
 
 fn look_failed(error: LookError) -> (End, String) {
-    let end = if matches!(error, LookError::Inputs(_)) { End::BadInput } else { End::Internal };
+    let end = if matches!(error, LookError::Inputs(_) | LookError::Calibration(_)) { End::BadInput } else { End::Internal };
     (end, error.to_string())
 }
 

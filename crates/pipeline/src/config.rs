@@ -4,8 +4,11 @@
 //! keep their place in the file ([`Located`]), so that what [`crate::study`] finds wrong points at its line. `flatten`
 //! and tagged enums are avoided: they lose those places.
 
+use biplane_distortion::DistortionParams;
+use biplane_environment::EnvironmentParams;
 use biplane_optimisation::MatchParams;
 use biplane_segmentation::SegmentParams;
+use biplane_spots::{Look, SpotSettings};
 use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -23,6 +26,21 @@ pub struct PipelineFile {
     /// The fluoroscopes, one table each: `[fluoroscope.A]`. One, two or more; their order is that of the file.
     #[schemars(with = "std::collections::BTreeMap<String, FluoroscopeSection>")]
     pub fluoroscope: InOrder<FluoroscopeSection>,
+    /// The plate whose pictures show the distortion (`plate` of a fluoroscope).
+    #[schemars(with = "Option<PlateSection>")]
+    pub plate: Option<toml::Spanned<PlateSection>>,
+    /// The frame of beads whose pictures show where the fluoroscopes stand (`beads` of a fluoroscope).
+    #[schemars(with = "Option<BeadsSection>")]
+    pub beads: Option<toml::Spanned<BeadsSection>>,
+    /// How holes and beads are found in calibration pictures.
+    #[serde(default)]
+    pub spots: SpotSettings,
+    /// How distortion is fitted to the plate.
+    #[serde(default)]
+    pub distortion: DistortionParams,
+    /// How the fluoroscopes are found from the beads.
+    #[serde(default)]
+    pub environment: EnvironmentParams,
     /// The bodies to find, one `[[body]]` each.
     pub body: Vec<BodySection>,
     /// The recordings, one `[[trial]]` each.
@@ -46,19 +64,112 @@ pub struct StudySection {
     pub name: String,
 }
 
-/// `[fluoroscope.A]`: one fluoroscope (a view).
+/// `[fluoroscope.A]`: one fluoroscope (a view). Either `beads` (raw calibration pictures) or `calibration` (a file of
+/// another program) says where it stands.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FluoroscopeSection {
-    /// Calibration file: MayaCam 2.0 text (as XMALab writes it) or source-and-plane JSON.
-    #[schemars(with = "String")]
-    pub calibration: Located,
+    /// Picture of the frame of beads, or a list of pictures of it in several places (the same places for every fluoroscope;
+    /// the first one is the laboratory's frame).
+    #[schemars(with = "Option<OneOrMoreTexts>")]
+    pub beads: Option<OneOrMore>,
+    /// Picture of the plate on this fluoroscope's intensifier. Without it the pictures must be corrected already.
+    #[schemars(with = "Option<String>")]
+    pub plate: Option<Located>,
+    /// Side of a pixel on the detector, mm: needed with `beads` where there is no `plate` (a flat panel's data sheet has it).
+    #[schemars(with = "Option<f64>")]
+    pub pixel_mm: Option<toml::Spanned<f64>>,
+    /// Calibration file: MayaCam 2.0 or 1.0, JointTrack, four points, or source-and-plane JSON.
+    #[schemars(with = "Option<String>")]
+    pub calibration: Option<Located>,
     /// Where the calibration file counts pixels from: the centre or the corner of the first pixel.
     #[serde(default)]
     pub pixel_origin: Origin,
-    /// Distortion table (CSV) of pictures that are not corrected. Without it the pictures must be corrected already.
+    /// Distortion table (CSV) of pictures that are not corrected, instead of a `plate`.
     #[schemars(with = "Option<String>")]
     pub distortion: Option<Located>,
+}
+
+/// One path, or a list of them.
+#[derive(Debug)]
+pub struct OneOrMore(pub Vec<Located>);
+
+/// The schema of [`OneOrMore`].
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "only its schema is used")]
+enum OneOrMoreTexts {
+    One(String),
+    More(Vec<String>),
+}
+
+impl<'de> Deserialize<'de> for OneOrMore {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        // Not through an untagged enum: it would lose the places in the file.
+        let value = toml::Spanned::<toml::Value>::deserialize(deserializer)?;
+        let (span, text) = (value.span(), "a path, or a list of paths");
+        let path = |v: toml::Value| match v {
+            toml::Value::String(path) => Ok(toml::Spanned::new(span.clone(), path)),
+            other => Err(serde::de::Error::custom(format!("expected {text}, found {}", other.type_str()))),
+        };
+        match value.into_inner() {
+            toml::Value::Array(list) => list.into_iter().map(path).collect::<Result<_, _>>().map(Self),
+            one => Ok(Self(vec![path(one)?])),
+        }
+    }
+}
+
+/// `[plate]`: the plate of known pattern that was fixed to the intensifiers. Either `list` or `pattern` and `pitch_mm`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlateSection {
+    /// Where its holes are (CSV: `hole,x_mm,y_mm,radius_mm`): any pattern, such as concentric circles.
+    #[schemars(with = "Option<String>")]
+    pub list: Option<Located>,
+    /// A regular grid instead of a list.
+    pub pattern: Option<Grid>,
+    /// Distance of neighbours of that grid, mm.
+    #[schemars(with = "Option<f64>")]
+    pub pitch_mm: Option<toml::Spanned<f64>>,
+    /// Whether its spots are brighter (holes) or darker (dots, beads) than the plate.
+    #[serde(default = "bright")]
+    pub spots: Look,
+}
+
+fn bright() -> Look {
+    Look::Bright
+}
+
+/// A regular grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Grid {
+    /// Squares.
+    Square,
+    /// Equilateral triangles (XMALab's plate).
+    Hexagonal,
+}
+
+/// `[beads]`: the frame of beads at known places. Its coordinates are the laboratory's.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BeadsSection {
+    /// Where the beads are: CSV `bead,x_mm,y_mm,z_mm,radius_mm`, or an XMALab cube file.
+    #[schemars(with = "String")]
+    pub list: Located,
+    /// Unit of the list.
+    #[serde(default)]
+    pub units: Units,
+    /// XMALab's file of reference beads: the marks by which the frame is recognised.
+    #[schemars(with = "Option<String>")]
+    pub references: Option<Located>,
+    /// Whether beads are darker or brighter than what is around them.
+    #[serde(default = "dark")]
+    pub spots: Look,
+}
+
+fn dark() -> Look {
+    Look::Dark
 }
 
 /// Where a calibration file has its pixel (0, 0).

@@ -4,9 +4,11 @@
 //! [`steps`] of the method and writes [`results`] and [`report`], [`look`] says what would be done and why. [`cli`] is
 //! the command line.
 
+pub mod calibrate;
 pub mod cli;
 pub mod config;
 pub mod diagnostics;
+pub mod drawings;
 pub mod init;
 pub mod logging;
 pub mod look;

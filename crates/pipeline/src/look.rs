@@ -3,6 +3,7 @@
 use biplane_stage::{Context, Explanation, Item, Store, StoreError};
 use rayon::prelude::*;
 
+use crate::calibrate::{CalibrateError, Way, calibrate};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
 use crate::study::Study;
@@ -17,6 +18,9 @@ pub enum LookError {
     /// The store cannot be used.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The calibration cannot be looked at.
+    #[error(transparent)]
+    Calibration(#[from] CalibrateError),
 }
 
 /// What would become of one item.
@@ -54,12 +58,19 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     }
     let store = Store::open(&prepared.study.hidden())?;
     let context = Context::new();
-    let steps = Steps { prepared: &prepared, store: &store, context: &context };
+    let (calibrated, way) = calibrate(&prepared, &store, &context, Way::Look(Vec::new()));
+    let calibrated = calibrated?.unwrap_or_default();
+    let steps =
+        Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context: &context };
     let looks: Vec<Vec<Look>> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");
     }
-    Ok(looks.into_iter().flatten().collect())
+    let before = match way {
+        Way::Look(before) => before,
+        Way::Run(_) => Vec::new(),
+    };
+    Ok(before.into_iter().chain(looks.into_iter().flatten()).collect())
 }
 
 fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
@@ -82,7 +93,7 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
     let mut matches = Vec::new();
     for (place, (body, _, _)) in job.bodies.iter().enumerate() {
         let item = steps.item(job, &study.bodies[*body].name);
-        let ready = curves.len() == job.pictures.len();
+        let ready = curves.len() == job.pictures.len() && !steps.calibrations.is_empty();
         looks.push(after(steps, MATCH, &item, fails, ready, || {
             let (why, stored) = steps.explain_match(job, place, &curves)?;
             matches.extend(stored.map(|s| s.promise()));
@@ -116,17 +127,28 @@ fn after(
                 (Fate::Fails, format!("{step}/{item}: {message}"))
             }
         }
-    } else if steps.ever_made(step, item) {
-        (Fate::Follows, format!("{step}/{item}: runs if what it follows comes out differently"))
     } else {
-        (Fate::Runs, format!("{step}/{item}: never ran"))
+        return Look::after(step, item, steps.ever_made(step, item));
     };
     Look { step, fate, line }
 }
 
+impl Look {
+    /// At an item that follows another one which would run; whether it ever ran `before`.
+    pub(crate) fn after(step: &'static str, item: &Item, before: bool) -> Self {
+        let (fate, why) = if before {
+            (Fate::Follows, "runs if what it follows comes out differently")
+        } else {
+            (Fate::Runs, "never ran")
+        };
+        Self { step, fate, line: format!("{step}/{item}: {why}") }
+    }
+}
+
 /// Counts a step.
 pub fn counts(looks: &[Look]) -> String {
-    let rows = STEPS.into_iter().map(|step| {
+    let used = STEPS.into_iter().filter(|step| looks.iter().any(|l| l.step == *step));
+    let rows = used.map(|step| {
         let of = |fate| looks.iter().filter(|l| l.step == step && l.fate == fate).count().to_string();
         vec![step.to_owned(), of(Fate::Cached), of(Fate::Runs), of(Fate::Follows), of(Fate::Fails)]
     });

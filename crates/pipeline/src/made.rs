@@ -1,7 +1,7 @@
-//! The list of overlays that runs made in the folder of results, so that those of frames, trials or views that are no
-//! longer in the study can be taken away, and nothing else is.
+//! The list of pictures that runs made in the folder of results (overlays, and what shows the calibration), so that those of
+//! frames, trials or views that are no longer in the study can be taken away, and nothing else is.
 //!
-//! `overlays/.made.json` names each overlay and the content hash it was written with. What the list does not name, or
+//! `overlays/.made.json` names each one and the content hash it was written with. What the list does not name, or
 //! what holds other bytes by now, is a person's: it stays.
 
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ impl Made {
 fn take_away(results: &Path, name: &str, hash: &str) -> std::io::Result<bool> {
     // The list is a file that anyone can edit: it must not reach out of the folder of overlays.
     let inside = Path::new(name).components().all(|c| matches!(c, Component::Normal(_)));
-    if !inside || !name.starts_with("overlays/") {
+    if !inside || !["overlays/", "calibration/"].iter().any(|folder| name.starts_with(folder)) {
         return Ok(false);
     }
     let path = results.join(name);

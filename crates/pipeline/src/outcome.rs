@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use biplane_artifact::{Match, Verdict};
 use biplane_geometry::Pose;
 
+use crate::calibrate::Calibrated;
+
 /// Where a start pose came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StartKind {
@@ -100,8 +102,10 @@ pub struct StepCount {
 }
 
 /// All that a run found.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Outcome {
+    /// The fluoroscopes, and what their pictures say of them.
+    pub calibration: Calibrated,
     /// In the order of trials and frames.
     pub frames: Vec<FrameOutcome>,
     /// Worth a look, in order.

@@ -8,19 +8,25 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use biplane_acquisition::calibration::{read_calibration, read_distortion_csv};
+use biplane_acquisition::beads::{read_bead_clicks, read_bead_list, read_xmalab_references};
+use biplane_acquisition::calibration::{CalibrationError, read_calibration, read_distortion_csv};
 use biplane_acquisition::frames::{FrameSource, PairBy, list_frames, pair};
 use biplane_acquisition::images::{ImageError, ImageFile, read_frame};
 use biplane_acquisition::meshes::{LengthUnit, read_mesh};
-use biplane_artifact::{Calibration, Frame, ModelMesh, PixelOrigin, Start};
+use biplane_acquisition::plates::{read_plate_clicks, read_plate_list};
+use biplane_artifact::{
+    BeadClicks, BeadList, Calibration, DistortionTable, Frame, ModelMesh, PixelOrigin, PlateClicks,
+    PlatePattern, Start,
+};
 use biplane_geometry::Point3;
+use biplane_spots::{Look, SpotParams};
 use biplane_stage::{Hashed, ParamsText};
 
 use crate::config;
 use crate::outcome::StartKind;
 use crate::sources::{InputIndex, MeshFacts};
 use crate::starts::{starts_of, unused_edits, unused_starts};
-use crate::study::{Body, Study, Trial, View};
+use crate::study::{Body, Correction, PlateSource, Study, Trial, View, ViewSource};
 use crate::tables::PoseTable;
 
 /// Files with many pictures that are kept open at a time.
@@ -53,8 +59,8 @@ pub struct Prepared {
     pub study: Study,
     /// What is known of the input files.
     pub index: InputIndex,
-    /// One a view of the study.
-    pub calibrations: Vec<Hashed<Calibration>>,
+    /// Where the fluoroscopes stand, or what that is found from.
+    pub equipment: Equipment,
     /// One a body of the study.
     pub meshes: Vec<Model>,
     /// In the order of trials and frames.
@@ -68,6 +74,58 @@ pub struct Prepared {
     /// Parameters of the step `overlay`: none.
     pub overlay: ParamsText,
     pictures: Pictures,
+}
+
+/// Where the fluoroscopes stand, or what that is found from.
+#[derive(Debug)]
+pub enum Equipment {
+    /// Read from files: one a view of the study.
+    Known(Vec<Hashed<Calibration>>),
+    /// To be found from raw pictures.
+    Pictures(Box<CalibrationInputs>),
+}
+
+impl Equipment {
+    /// What is known without running anything.
+    pub fn known(&self) -> &[Hashed<Calibration>] {
+        match self {
+            Self::Known(calibrations) => calibrations,
+            Self::Pictures(_) => &[],
+        }
+    }
+
+    /// What it is to be found from.
+    pub fn inputs(&self) -> Option<&CalibrationInputs> {
+        match self {
+            Self::Known(_) => None,
+            Self::Pictures(inputs) => Some(inputs),
+        }
+    }
+}
+
+/// All that finding the fluoroscopes needs beside the pictures.
+#[derive(Debug)]
+pub struct CalibrationInputs {
+    /// The plate, if there is one.
+    pub pattern: Option<Hashed<PlatePattern>>,
+    /// A person's correspondences on the plate, one a view.
+    pub plate_clicks: Vec<Option<Hashed<PlateClicks>>>,
+    /// Distortion tables from files, one a view.
+    pub tables: Vec<Option<DistortionTable>>,
+    /// The frame of beads.
+    pub beads: Hashed<BeadList>,
+    /// A person's clicks on beads, of all views together.
+    pub bead_clicks: Option<Hashed<BeadClicks>>,
+    /// How many pictures of the beads each view has.
+    pub placings: usize,
+    /// Parameters of `spots` on a plate.
+    pub plate_spots: ParamsText,
+    /// Parameters of `spots` on beads.
+    pub bead_spots: ParamsText,
+    /// Parameters of `distortion`.
+    pub distortion: ParamsText,
+    /// Parameters of `environment`.
+    pub environment: ParamsText,
 }
 
 /// A body's mesh, read when it is first needed.
@@ -133,8 +191,13 @@ impl Prepared {
         let index = InputIndex::open(&study.root, &study.hidden());
         let mut faults = Faults { study: &study, list: Vec::new() };
         let mut warnings = Vec::new();
-        let calibrations: Vec<_> =
-            study.views.iter().filter_map(|v| faults.keep(calibration(v)).map(Hashed::new)).collect();
+        let equipment = if study.calibrates() {
+            calibration_inputs(&study, &mut faults, &mut warnings)
+                .map(|inputs| Equipment::Pictures(Box::new(inputs)))
+        } else {
+            let calibrations = study.views.iter().filter_map(|v| faults.keep(calibration(v)).flatten());
+            Some(Equipment::Known(calibrations.map(Hashed::new).collect()))
+        };
         let meshes: Vec<Model> = study.bodies.iter().filter_map(|b| faults.keep(model(b, &index))).collect();
         for (body, mesh) in study.bodies.iter().zip(&meshes) {
             let file = study.relative(&body.mesh);
@@ -204,11 +267,11 @@ impl Prepared {
         let matching = faults.keep(ParamsText::of(&study.matching));
         let overlay = faults.keep(ParamsText::of(&()));
         let warnings: Vec<String> = warnings.iter().map(|w| study.shorten(w)).collect();
-        match (segment, matching, overlay, faults.list) {
-            (Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => Ok(Self {
+        match (equipment, segment, matching, overlay, faults.list) {
+            (Some(equipment), Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => Ok(Self {
                 study,
                 index,
-                calibrations,
+                equipment,
                 meshes,
                 jobs,
                 warnings,
@@ -251,25 +314,87 @@ impl Faults<'_> {
     }
 }
 
-fn calibration(view: &View) -> Result<Calibration, biplane_acquisition::calibration::CalibrationError> {
-    let origin = match view.pixel_origin {
+/// `None` where raw pictures say where a view stands.
+fn calibration(view: &View) -> Result<Option<Calibration>, CalibrationError> {
+    let ViewSource::File { calibration, pixel_origin, distortion } = &view.source else { return Ok(None) };
+    let origin = match pixel_origin {
         config::Origin::Centre => PixelOrigin::Centre,
         config::Origin::Corner => PixelOrigin::Corner,
     };
-    let mut calibration = read_calibration(&view.calibration, &view.name, origin)?;
-    if let Some(path) = &view.distortion {
+    let mut calibration = read_calibration(calibration, &view.name, origin)?;
+    if let Some(path) = distortion {
         calibration.distortion = Some(read_distortion_csv(path)?);
     }
-    Ok(calibration)
+    Ok(Some(calibration))
 }
 
-fn model(body: &Body, index: &InputIndex) -> Result<Model, biplane_acquisition::meshes::MeshFileError> {
-    let unit = match body.units {
+fn calibration_inputs(
+    study: &Study,
+    faults: &mut Faults<'_>,
+    warnings: &mut Vec<String>,
+) -> Option<CalibrationInputs> {
+    let pattern = match &study.plate {
+        None => None,
+        Some(plate) => Some(match &plate.pattern {
+            PlateSource::List(path) => faults.keep(read_plate_list(path))?,
+            PlateSource::Grid(config::Grid::Square, pitch_mm) => PlatePattern::Square { pitch_mm: *pitch_mm },
+            PlateSource::Grid(config::Grid::Hexagonal, pitch_mm) => {
+                PlatePattern::Hexagonal { pitch_mm: *pitch_mm }
+            }
+        }),
+    };
+    let frame = study.beads.as_ref()?;
+    let mut read = faults.keep(read_bead_list(&frame.list, unit(frame.units)))?;
+    warnings.extend(read.notes.iter().map(|note| format!("{}: {note}", study.relative(&frame.list))));
+    if let Some(references) = &frame.references {
+        faults.keep(read_xmalab_references(references, &mut read.list))?;
+    }
+    let beads = read.list;
+    let (mut plate_clicks, mut tables) = (Vec::new(), Vec::new());
+    let (mut clicks, mut placings) = (BeadClicks::default(), 0);
+    for (number, view) in study.views.iter().enumerate() {
+        let ViewSource::Pictures { beads: pictures, correction } = &view.source else { continue };
+        placings = pictures.len();
+        let own = study.clicks("plate", &view.name);
+        let given = pattern.as_ref().filter(|_| own.is_file());
+        let given = given.and_then(|pattern| faults.keep(read_plate_clicks(&own, pattern)));
+        plate_clicks.push(given.map(Hashed::new));
+        tables.push(match correction {
+            Correction::Table(path, _) => faults.keep(read_distortion_csv(path)),
+            Correction::Plate(_) | Correction::None(_) => None,
+        });
+        let own = study.clicks("beads", &view.name);
+        if own.is_file() {
+            clicks.0.extend(faults.keep(read_bead_clicks(&own, number, &beads)).into_iter().flat_map(|c| c.0));
+        }
+    }
+    let spots = |look| ParamsText::of(&SpotParams { look, settings: study.spots.clone() });
+    let on_plate = study.plate.as_ref().map_or(Look::Bright, |p| p.spots);
+    Some(CalibrationInputs {
+        pattern: pattern.map(Hashed::new),
+        plate_clicks,
+        tables,
+        beads: Hashed::new(beads),
+        bead_clicks: (!clicks.0.is_empty()).then(|| Hashed::new(clicks)),
+        placings,
+        plate_spots: faults.keep(spots(on_plate))?,
+        bead_spots: faults.keep(spots(frame.spots))?,
+        distortion: faults.keep(ParamsText::of(&study.distortion))?,
+        environment: faults.keep(ParamsText::of(&study.environment))?,
+    })
+}
+
+fn unit(units: config::Units) -> LengthUnit {
+    match units {
         config::Units::Mm => LengthUnit::Millimetres,
         config::Units::Cm => LengthUnit::Centimetres,
         config::Units::M => LengthUnit::Metres,
         config::Units::In => LengthUnit::Inches,
-    };
+    }
+}
+
+fn model(body: &Body, index: &InputIndex) -> Result<Model, biplane_acquisition::meshes::MeshFileError> {
+    let unit = unit(body.units);
     let loaded = OnceLock::new();
     let facts = index.mesh(&body.mesh, unit.name(), || {
         let file = read_mesh(&body.mesh, unit)?;

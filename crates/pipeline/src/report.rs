@@ -2,9 +2,10 @@
 //!
 //! The same results give the same bytes: no clock and no absolute path is in it.
 
-use biplane_artifact::{Match, Verdict, ViewFit};
+use biplane_artifact::{Match, PlateFit, Verdict, ViewFit};
 use serde::Serialize;
 
+use crate::calibrate::Calibrated;
 use crate::outcome::{BodyOutcome, FrameOutcome, Outcome};
 use crate::overlay::COLOURS;
 use crate::results::UNKNOWN;
@@ -80,6 +81,36 @@ struct TrialPart {
     cards: Vec<Card>,
 }
 
+/// What the calibration pictures gave.
+#[derive(Serialize)]
+struct CalibrationPart {
+    verdict: &'static str,
+    views: Vec<CalibratedView>,
+    angle: Option<String>,
+    triangulation: Option<String>,
+    drawings: Vec<ShownDrawing>,
+}
+
+#[derive(Serialize)]
+struct ShownDrawing {
+    title: String,
+    src: String,
+}
+
+#[derive(Serialize)]
+struct CalibratedView {
+    view: String,
+    holes: String,
+    before: String,
+    held_out: String,
+    model: String,
+    beads: String,
+    reprojection: String,
+    distance: String,
+    pixel: String,
+    source: String,
+}
+
 #[derive(Serialize)]
 struct Page<'a> {
     name: &'a str,
@@ -90,6 +121,7 @@ struct Page<'a> {
     frames: usize,
     views: Vec<&'a str>,
     warnings: &'a [String],
+    calibration: Option<CalibrationPart>,
     failures: Vec<(&'a str, &'a str)>,
     trials: Vec<TrialPart>,
     provenance: &'a Provenance,
@@ -112,11 +144,53 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
         frames: outcome.frames.len(),
         views: study.views.iter().map(|v| v.name.as_str()).collect(),
         warnings: &outcome.warnings,
+        calibration: calibration_part(&outcome.calibration),
         failures: outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect(),
         trials: (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect(),
         provenance,
     };
     Ok(environment.get_template("report.html")?.render(minijinja::value::Serde(page))?)
+}
+
+fn calibration_part(calibrated: &Calibrated) -> Option<CalibrationPart> {
+    let environment = calibrated.environment.as_ref()?;
+    let sigma = |view: usize, axis: usize| {
+        environment.covariance.get(9 * view + axis).and_then(|row| row.get(9 * view + axis)).map(|v| v.sqrt())
+    };
+    let views = environment.views.iter().zip(&calibrated.plates).enumerate();
+    let views = views.map(|(number, (found, plate))| {
+        let of_plate = |text: fn(&PlateFit) -> String| plate.as_ref().map_or(String::new(), |fit| text(fit));
+        let source = found.source.iter().enumerate().map(|(axis, v)| match sigma(number, axis) {
+            Some(sigma) => format!("{v:.2} ± {sigma:.2}"),
+            None => format!("{v:.2}"),
+        });
+        CalibratedView {
+            view: found.view.clone(),
+            holes: of_plate(|f| f.matched.iter().filter(|m| m.used).count().to_string()),
+            before: of_plate(|f| format!("{:.2}", f.before_rms_px)),
+            held_out: of_plate(|f| {
+                let score = f.models.iter().find(|m| m.name == f.model);
+                score.map_or(String::new(), |m| format!("{:.3}", m.held_out_rms_px))
+            }),
+            model: of_plate(|f| f.model.clone()),
+            beads: found.beads.iter().filter(|b| b.used).count().to_string(),
+            reprojection: format!("{:.3}", found.reprojection_rms_px),
+            distance: format!("{:.2}", found.source_to_detector_mm),
+            pixel: format!("{:.5}", found.pixel_mm),
+            source: source.collect::<Vec<_>>().join(", "),
+        }
+    });
+    let drawings = calibrated.drawings.iter().map(|drawn| ShownDrawing {
+        title: drawn.title.clone(),
+        src: url(&crate::diagnostics::slashes(&drawn.place)),
+    });
+    Some(CalibrationPart {
+        verdict: calibrated.verdict().word(),
+        views: views.collect(),
+        angle: environment.angle_deg.map(|a| format!("{a:.2}")),
+        triangulation: environment.triangulation_rms_mm.map(|mm| format!("{mm:.3}")),
+        drawings: drawings.collect(),
+    })
 }
 
 fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
@@ -238,9 +312,11 @@ mod tests {
     fn study() -> Study {
         let view = |name: &str| View {
             name: name.into(),
-            calibration: "c".into(),
-            pixel_origin: crate::config::Origin::Centre,
-            distortion: None,
+            source: crate::study::ViewSource::File {
+                calibration: "c".into(),
+                pixel_origin: crate::config::Origin::Centre,
+                distortion: None,
+            },
         };
         Study {
             root: "/study".into(),
@@ -256,6 +332,11 @@ mod tests {
                 starts: None,
                 bodies: vec![0],
             }],
+            plate: None,
+            beads: None,
+            spots: Default::default(),
+            distortion: Default::default(),
+            environment: Default::default(),
             segment: Default::default(),
             matching: Default::default(),
             output: "/study/results".into(),

@@ -7,7 +7,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use biplane_artifact::PoseRecord;
+use biplane_artifact::{DistortionTable, PoseRecord};
 use biplane_geometry::Pose;
 
 use crate::outcome::{BodyOutcome, FrameOutcome, Outcome};
@@ -61,6 +61,17 @@ pub fn copy_if_other(from: &Path, to: &Path) -> std::io::Result<()> {
     }
     write_if_changed(to, &std::fs::read(from)?)?;
     std::fs::File::options().write(true).open(to)?.set_modified(modified)
+}
+
+/// A distortion table as `distortion` of a fluoroscope reads it.
+pub fn distortion_csv(table: &DistortionTable) -> String {
+    let mut text = String::from("distorted_x_px,distorted_y_px,ideal_x_px,ideal_y_px\n");
+    for (k, [x, y]) in table.ideal_px.iter().enumerate() {
+        let at = [k % table.count[0], k / table.count[0]];
+        let [u, v]: [f64; 2] = std::array::from_fn(|i| table.first_px[i] + at[i] as f64 * table.step_px[i]);
+        text += &format!("{u},{v},{x:.6},{y:.6}\n");
+    }
+    text
 }
 
 /// The header of `poses.csv`.

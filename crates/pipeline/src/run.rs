@@ -1,4 +1,5 @@
-//! Runs a study: every frame's pictures to curves, curves to poses, poses to overlays, then `poses.csv` and the report.
+//! Runs a study: calibration pictures to fluoroscopes, every frame's pictures to curves, curves to poses, poses to overlays,
+//! then `poses.csv` and the report.
 //!
 //! Frames are spread over threads; what comes out does not depend on how many, nor on the order they finish in. A frame
 //! that fails stops nothing but itself.
@@ -10,6 +11,7 @@ use biplane_artifact::Match;
 use biplane_stage::{Context, Hashed, How, Store, StoreError};
 use rayon::prelude::*;
 
+use crate::calibrate::{CalibrateError, Calibrated, Way, calibrate};
 use crate::diagnostics::slashes;
 use crate::logging::Progress;
 use crate::made::Made;
@@ -17,8 +19,8 @@ use crate::outcome::{BodyOutcome, Failure, FrameOutcome, Outcome, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
-use crate::steps::{ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
-use crate::study::Study;
+use crate::steps::{DISTORTION, ENVIRONMENT, ItemError, MATCH, OVERLAY, SEGMENT, SPOTS, STEPS, Steps};
+use crate::study::{Plate, PlateSource, Study, ViewSource};
 
 /// Why a run came to no end.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +28,9 @@ pub enum RunError {
     /// Inputs that everything hangs on are wrong.
     #[error(transparent)]
     Inputs(#[from] InputErrors),
+    /// The fluoroscopes were not found.
+    #[error("The calibration failed, so no frame was matched.\n{0}")]
+    Calibration(String),
     /// The store cannot be used.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -59,12 +64,15 @@ pub enum RunError {
     },
 }
 
-/// What one frame gave, its counts in the order of the steps.
+/// The steps of a frame.
+const OF_FRAMES: [&str; 3] = [SEGMENT, MATCH, OVERLAY];
+
+/// What one frame gave, its counts in the order of its steps.
 struct Frame {
     outcome: FrameOutcome,
     failures: Vec<Failure>,
     warnings: Vec<String>,
-    counts: [StepCount; STEPS.len()],
+    counts: [StepCount; OF_FRAMES.len()],
     inputs: Vec<(String, String)>,
     /// Overlays and the hashes of their bytes.
     made: Vec<(String, String)>,
@@ -83,21 +91,31 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         tracing::warn!("{warning}");
     }
     for view in &prepared.study.views {
-        let origin = view.pixel_origin.word();
-        let file = prepared.study.relative(&view.calibration);
-        tracing::info!(
-            "view {}: {file}, whose pixels are counted from the {origin} of the first one",
-            view.name
-        );
+        if let ViewSource::File { calibration, pixel_origin, .. } = &view.source {
+            let (file, origin) = (prepared.study.relative(calibration), pixel_origin.word());
+            tracing::info!(
+                "view {}: {file}, whose pixels are counted from the {origin} of the first one",
+                view.name
+            );
+        }
     }
-    let steps = Steps { prepared: &prepared, store: &store, context };
+    let mut provenance = provenance(&prepared);
+    let (mut warnings, mut steps) = (prepared.warnings.clone(), STEPS.map(|name| (name, StepCount::default())));
+    let mut calibrated = calibration(&prepared, &store, context, &mut steps, &mut warnings)?;
+    provenance.inputs.extend(calibrated.inputs.drain(..));
+    let steps_of_frames = Steps {
+        prepared: &prepared,
+        calibrations: &calibrated.calibrations,
+        store: &store,
+        context,
+    };
     let progress = Progress::new("Matching", prepared.jobs.len());
     let frames: Vec<Option<Frame>> = pool.install(|| {
         prepared
             .jobs
             .par_iter()
             .map(|job| {
-                let frame = run_frame(&steps, job);
+                let frame = run_frame(&steps_of_frames, job);
                 progress.tick();
                 frame
             })
@@ -106,9 +124,15 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     drop(progress);
     let done = frames.iter().flatten().count();
     let stopped = done < frames.len();
-    let made = Made::of(frames.iter().flatten().flat_map(|f| f.made.iter().cloned()));
-    let mut provenance = provenance(&prepared);
-    let outcome = gather(frames.into_iter().flatten(), &prepared.warnings, &mut provenance);
+    let written = calibrated.write(&prepared.study.output, &prepared.study.views);
+    let written = written.map_err(|(place, source)| RunError::Write {
+        path: slashes(&prepared.study.output.join(place)),
+        source,
+    })?;
+    let of_frames = frames.iter().flatten().flat_map(|f| f.made.iter().cloned());
+    let made = Made::of(of_frames.chain(written));
+    let mut outcome = gather(frames.into_iter().flatten(), steps, warnings, &mut provenance);
+    outcome.calibration = std::mem::take(&mut calibrated);
     let (study, jobs) = (prepared.study, prepared.jobs.len());
     let hidden = study.hidden();
     let index = prepared.index.save(!stopped);
@@ -117,7 +141,7 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     let removed = removed
         .map_err(|source| RunError::Write { path: slashes(&study.output.join("overlays")), source })?;
     if removed > 0 {
-        tracing::info!("removed {removed} overlay(s) of earlier runs that are not of this study any more");
+        tracing::info!("removed {removed} picture(s) of earlier runs that are not of this study any more");
     }
     if stopped {
         return Err(RunError::Stopped { done, frames: jobs });
@@ -157,7 +181,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         },
         failures: Vec::new(),
         warnings: Vec::new(),
-        counts: [StepCount::default(); STEPS.len()],
+        counts: [StepCount::default(); OF_FRAMES.len()],
         inputs: Vec::new(),
         made: Vec::new(),
     };
@@ -273,15 +297,61 @@ fn count(frame: &mut Frame, step: usize, item: &str, how: &How) {
     }
 }
 
-fn gather(frames: impl Iterator<Item = Frame>, warnings: &[String], provenance: &mut Provenance) -> Outcome {
-    let mut outcome = Outcome { warnings: warnings.to_vec(), ..Outcome::default() };
-    let mut steps = STEPS.map(|name| (name, StepCount::default()));
+/// Finds the fluoroscopes, or takes them from files; counts what was done.
+fn calibration(
+    prepared: &Prepared,
+    store: &Store,
+    context: &Context,
+    steps: &mut [(&'static str, StepCount)],
+    warnings: &mut Vec<String>,
+) -> Result<Calibrated, RunError> {
+    let (calibrated, way) = calibrate(prepared, store, context, Way::Run(Vec::new()));
+    let done = match way {
+        Way::Run(done) => done,
+        Way::Look(_) => Vec::new(),
+    };
+    let mut own = Vec::new();
+    for (step, item, how) in done {
+        if let Some((_, count)) = steps.iter_mut().find(|(name, _)| *name == step) {
+            match how {
+                How::Cached => count.cached += 1,
+                How::Ran => count.ran += 1,
+                How::Remade(damage) => {
+                    count.ran += 1;
+                    own.push(format!("{item} was made again: {damage}"));
+                }
+            }
+        }
+    }
+    let calibrated = calibrated.map_err(|error| match error {
+        CalibrateError::Cancelled => RunError::Stopped { done: 0, frames: prepared.jobs.len() },
+        CalibrateError::Failed(list) => RunError::Calibration(list.join("\n")),
+    })?;
+    // Running leaves nothing unknown.
+    let calibrated = calibrated.unwrap_or_default();
+    own.extend(calibrated.warnings(&prepared.study.views));
+    for warning in &own {
+        tracing::warn!("{warning}");
+    }
+    warnings.extend(own);
+    Ok(calibrated)
+}
+
+fn gather(
+    frames: impl Iterator<Item = Frame>,
+    mut steps: [(&'static str, StepCount); STEPS.len()],
+    warnings: Vec<String>,
+    provenance: &mut Provenance,
+) -> Outcome {
+    let mut outcome = Outcome { warnings, ..Outcome::default() };
     let mut inputs: BTreeMap<String, String> = provenance.inputs.drain(..).collect();
     for frame in frames {
-        for ((_, sum), part) in steps.iter_mut().zip(frame.counts) {
-            sum.cached += part.cached;
-            sum.ran += part.ran;
-            sum.failed += part.failed;
+        for (step, part) in OF_FRAMES.into_iter().zip(frame.counts) {
+            if let Some((_, sum)) = steps.iter_mut().find(|(name, _)| *name == step) {
+                sum.cached += part.cached;
+                sum.ran += part.ran;
+                sum.failed += part.failed;
+            }
         }
         for warning in &frame.warnings {
             tracing::warn!("{warning}");
@@ -292,7 +362,7 @@ fn gather(frames: impl Iterator<Item = Frame>, warnings: &[String], provenance: 
         outcome.frames.push(frame.outcome);
     }
     provenance.inputs = inputs.into_iter().collect();
-    outcome.steps = steps.to_vec();
+    outcome.steps = steps.into_iter().filter(|(_, c)| c.cached + c.ran + c.failed > 0).collect();
     outcome
 }
 
@@ -301,24 +371,34 @@ fn provenance(prepared: &Prepared) -> Provenance {
     let study = &prepared.study;
     let text = |result: Result<String, toml::ser::Error>| result.unwrap_or_default();
     let mut inputs = Vec::new();
-    for (view, calibration) in study.views.iter().zip(&prepared.calibrations) {
-        let origin = view.pixel_origin.word();
-        let distortion = view.distortion.as_ref().map(|d| format!(", {}", study.relative(d)));
-        let file = study.relative(&view.calibration);
-        let name =
-            format!("{file}{} (view {}, pixel_origin {origin})", distortion.unwrap_or_default(), view.name);
-        inputs.push((name, calibration.hash().to_hex()));
+    for (view, calibration) in study.views.iter().zip(prepared.equipment.known()) {
+        if let ViewSource::File { calibration: file, pixel_origin, distortion } = &view.source {
+            let distortion = distortion.as_ref().map(|d| format!(", {}", study.relative(d)));
+            let (file, origin) = (study.relative(file), pixel_origin.word());
+            let name =
+                format!("{file}{} (view {}, pixel_origin {origin})", distortion.unwrap_or_default(), view.name);
+            inputs.push((name, calibration.hash().to_hex()));
+        }
+    }
+    let mut parameters = Vec::new();
+    if let Some(calibration) = prepared.equipment.inputs() {
+        let beads = study.beads.as_ref().map(|b| study.relative(&b.list));
+        inputs.extend(beads.map(|file| (file, calibration.beads.hash().to_hex())));
+        if let (Some(Plate { pattern: PlateSource::List(file), .. }), Some(pattern)) =
+            (&study.plate, &calibration.pattern)
+        {
+            inputs.push((study.relative(file), pattern.hash().to_hex()));
+        }
+        parameters.push((SPOTS.to_owned(), text(toml::to_string(&study.spots))));
+        parameters.push((DISTORTION.to_owned(), text(toml::to_string(&study.distortion))));
+        parameters.push((ENVIRONMENT.to_owned(), text(toml::to_string(&study.environment))));
     }
     for (body, mesh) in study.bodies.iter().zip(&prepared.meshes) {
         inputs.push((study.relative(&body.mesh), mesh.facts.hash().to_hex()));
     }
-    Provenance {
-        parameters: vec![
-            (SEGMENT.to_owned(), text(toml::to_string(&study.segment))),
-            (MATCH.to_owned(), text(toml::to_string(&study.matching))),
-        ],
-        inputs,
-    }
+    parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));
+    parameters.push((MATCH.to_owned(), text(toml::to_string(&study.matching))));
+    Provenance { parameters, inputs }
 }
 
 fn write(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<(), RunError> {
@@ -360,8 +440,10 @@ mod tests {
             made: vec![],
         };
         let mut provenance = Provenance { parameters: vec![], inputs: vec![("c".into(), "3".into())] };
-        let outcome = gather([frame(2), frame(3)].into_iter(), &["first".into()], &mut provenance);
-        assert_eq!(outcome.steps[0], (SEGMENT, StepCount { cached: 2, ran: 5, failed: 0 }));
+        let steps = STEPS.map(|name| (name, StepCount::default()));
+        let outcome =
+            gather([frame(2), frame(3)].into_iter(), steps, vec!["first".into()], &mut provenance);
+        assert_eq!(outcome.steps, [(SEGMENT, StepCount { cached: 2, ran: 5, failed: 0 })], "no empty steps");
         assert_eq!(outcome.warnings, ["first", "w", "w"]);
         assert_eq!(outcome.verdicts(), [0, 0, 2]);
         let names: Vec<&str> = provenance.inputs.iter().map(|(name, _)| name.as_str()).collect();

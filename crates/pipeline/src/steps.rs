@@ -3,7 +3,7 @@
 //! `segment/<trial>/<frame>/<view>` makes curves from a picture, `match/<trial>/<frame>/<body>` a pose from the curves of
 //! all views, `overlay/<trial>/<frame>/<view>` a picture with the outlines of the posed bodies.
 
-use biplane_artifact::{Artifact, Curves, Match, Picture};
+use biplane_artifact::{Artifact, Calibration, Curves, Match, Picture};
 use biplane_optimisation::{MatchBody, MatchInputs};
 use biplane_segmentation::{Segment, SegmentInputs};
 use biplane_stage::{
@@ -14,7 +14,16 @@ use biplane_stage::{
 use crate::overlay::{Overlay, OverlayInputs};
 use crate::prepare::{Job, Prepared};
 use crate::sources::FrameFacts;
+use crate::study::ViewSource;
 
+/// Step of holes and beads in calibration pictures.
+pub const SPOTS: &str = "spots";
+/// Step of distortion.
+pub const DISTORTION: &str = "distortion";
+/// Step of the fluoroscopes.
+pub const ENVIRONMENT: &str = "environment";
+/// Step of drawings of the calibration.
+pub const DRAWING: &str = "drawing";
 /// Step of edge curves.
 pub const SEGMENT: &str = "segment";
 /// Step of poses.
@@ -22,7 +31,7 @@ pub const MATCH: &str = "match";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 3] = [SEGMENT, MATCH, OVERLAY];
+pub const STEPS: [&str; 7] = [SPOTS, DISTORTION, ENVIRONMENT, DRAWING, SEGMENT, MATCH, OVERLAY];
 
 /// Why an item has no output.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +48,7 @@ pub enum ItemError {
 pub type Explained<A> = Result<(Explanation, Option<Stored<A>>), ItemError>;
 
 impl ItemError {
-    fn of(error: impl std::fmt::Display) -> Self {
+    pub(crate) fn of(error: impl std::fmt::Display) -> Self {
         Self::Failed(error.to_string())
     }
 }
@@ -49,6 +58,8 @@ impl ItemError {
 pub struct Steps<'a> {
     /// The study.
     pub prepared: &'a Prepared,
+    /// One a view; none as long as they are not known.
+    pub calibrations: &'a [Hashed<Calibration>],
     /// Its store.
     pub store: &'a Store,
     /// Threads see this to stop.
@@ -82,14 +93,17 @@ impl Steps<'_> {
             self.prepared.index.frame(&source.path, source.index_in_file, || self.prepared.read(source));
         let facts = facts.map_err(ItemError::of)?;
         let (view, name) = self.view(job, slot);
-        let expected = self.prepared.calibrations[view].size;
+        let expected = self.calibrations.get(view).map_or(facts.size, |c| c.size);
         if facts.size != expected {
             let [found, expected] = [facts.size, expected].map(|[w, h]| format!("{w} x {h}"));
+            let calibration = match &self.prepared.study.views[view].source {
+                ViewSource::File { calibration, .. } => calibration.display().to_string(),
+                ViewSource::Pictures { .. } => "from its pictures of beads".to_owned(),
+            };
             return Err(ItemError::Failed(format!(
-                "{}: {found} pixels, but the calibration of view {name} ({}) is for {expected}. Use the pictures that were \
-                 calibrated, neither cropped nor scaled, or the calibration that belongs to these",
+                "{}: {found} pixels, but the calibration of view {name} ({calibration}) is for {expected}. Use the pictures \
+                 that were calibrated, neither cropped nor scaled, or the calibration that belongs to these",
                 source.path.display(),
-                self.prepared.study.views[view].calibration.display()
             )));
         }
         Ok(facts)
@@ -116,7 +130,7 @@ impl Steps<'_> {
         MatchInputs {
             curves: curves.iter().map(Stored::promise).collect(),
             calibrations: (0..curves.len())
-                .map(|slot| self.prepared.calibrations[self.view(job, slot).0].promise())
+                .map(|slot| self.calibrations[self.view(job, slot).0].promise())
                 .collect(),
             model: self.prepared.meshes[*body].facts.promise(),
             start: start.promise(),
@@ -136,9 +150,9 @@ impl Steps<'_> {
         let (body, _, start) = &job.bodies[place];
         let load = || -> Result<MatchInputs, String> {
             Ok(MatchInputs {
-                curves: curves.iter().map(|c| self.read(c)).collect::<Result<_, _>>()?,
+                curves: curves.iter().map(|c| read_stored(self.store, c)).collect::<Result<_, _>>()?,
                 calibrations: (0..curves.len())
-                    .map(|slot| self.prepared.calibrations[self.view(job, slot).0].clone())
+                    .map(|slot| self.calibrations[self.view(job, slot).0].clone())
                     .collect(),
                 model: self.prepared.meshes[*body].load()?,
                 start: start.clone(),
@@ -150,7 +164,7 @@ impl Steps<'_> {
             .store
             .execute::<MatchBody, _>(MATCH, &item, &self.prepared.matching, &promised, load, self.context)
             .map_err(|e| self.failed(job, None, e))?;
-        Ok((self.read(&done.output).map_err(ItemError::Failed)?, done.how))
+        Ok((read_stored(self.store, &done.output).map_err(ItemError::Failed)?, done.how))
     }
 
     fn overlay_promised(
@@ -162,7 +176,7 @@ impl Steps<'_> {
     ) -> OverlayInputs<Promised> {
         OverlayInputs {
             frame: facts.promise(),
-            calibration: self.prepared.calibrations[self.view(job, slot).0].promise(),
+            calibration: self.calibrations[self.view(job, slot).0].promise(),
             models: job.bodies.iter().map(|(body, ..)| self.prepared.meshes[*body].facts.promise()).collect(),
             matches: matches.to_vec(),
         }
@@ -184,7 +198,7 @@ impl Steps<'_> {
             let models = job.bodies.iter().map(|(body, ..)| self.prepared.meshes[*body].load());
             Ok(OverlayInputs {
                 frame: Hashed::new(self.prepared.read(&job.pictures[slot]).map_err(|e| e.to_string())?),
-                calibration: self.prepared.calibrations[view].clone(),
+                calibration: self.calibrations[view].clone(),
                 models: models.collect::<Result<_, _>>()?,
                 matches: matches.to_vec(),
             })
@@ -243,18 +257,6 @@ impl Steps<'_> {
         ItemError::of(error)
     }
 
-    /// Reads a stored output; a damaged one is taken away, so that the next run makes it again.
-    fn read<A: Artifact>(&self, stored: &Stored<A>) -> Result<Hashed<A>, String> {
-        stored.load().map_err(|error| {
-            if let StoreError::Damaged(damage) = &error
-                && self.store.discard(damage.key).is_ok()
-            {
-                return format!("{damage}. It was taken away: run again to make it anew");
-            }
-            error.to_string()
-        })
-    }
-
     /// Why a picture would be worked on, and its curves if they are there.
     ///
     /// # Errors
@@ -288,4 +290,16 @@ impl Steps<'_> {
         };
         Ok((why, found))
     }
+}
+
+/// Reads a stored output; a damaged one is taken away, so that the next run makes it again.
+pub(crate) fn read_stored<A: Artifact>(store: &Store, stored: &Stored<A>) -> Result<Hashed<A>, String> {
+    stored.load().map_err(|error| {
+        if let StoreError::Damaged(damage) = &error
+            && store.discard(damage.key).is_ok()
+        {
+            return format!("{damage}. It was taken away: run again to make it anew");
+        }
+        error.to_string()
+    })
 }

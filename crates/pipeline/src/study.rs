@@ -7,10 +7,16 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use biplane_distortion::DistortionParams;
+use biplane_environment::EnvironmentParams;
 use biplane_optimisation::{MatchError, MatchParams};
 use biplane_segmentation::{SegmentError, SegmentParams};
+use biplane_spots::{Look, SpotSettings};
 
-use crate::config::{InOrder, Located, Origin, PairBy, PipelineFile, TrialSection, Units};
+use crate::config::{
+    BeadsSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy, PipelineFile,
+    PlateSection, TrialSection, Units,
+};
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
 
 /// A checked study.
@@ -26,6 +32,16 @@ pub struct Study {
     pub bodies: Vec<Body>,
     /// In the order of the file.
     pub trials: Vec<Trial>,
+    /// The plate of the calibration pictures, if there is one.
+    pub plate: Option<Plate>,
+    /// The frame of beads of the calibration pictures, if there is one.
+    pub beads: Option<Beads>,
+    /// How holes and beads are found.
+    pub spots: SpotSettings,
+    /// How distortion is fitted.
+    pub distortion: DistortionParams,
+    /// How fluoroscopes are found from beads.
+    pub environment: EnvironmentParams,
     /// How edges are found.
     pub segment: SegmentParams,
     /// How poses are found.
@@ -39,12 +55,71 @@ pub struct Study {
 pub struct View {
     /// Its name.
     pub name: String,
-    /// Its calibration file.
-    pub calibration: PathBuf,
-    /// Where that file counts pixels from.
-    pub pixel_origin: Origin,
-    /// Its distortion table, if its pictures are not corrected.
-    pub distortion: Option<PathBuf>,
+    /// What says where it stands.
+    pub source: ViewSource,
+}
+
+/// What says where a fluoroscope stands. All fluoroscopes of a study are of one kind.
+#[derive(Debug, Clone)]
+pub enum ViewSource {
+    /// Another program's calibration.
+    File {
+        /// Its calibration file.
+        calibration: PathBuf,
+        /// Where that file counts pixels from.
+        pixel_origin: Origin,
+        /// Its distortion table, if its pictures are not corrected.
+        distortion: Option<PathBuf>,
+    },
+    /// Raw calibration pictures.
+    Pictures {
+        /// Pictures of the frame of beads, one a placing.
+        beads: Vec<PathBuf>,
+        /// How its pictures are corrected.
+        correction: Correction,
+    },
+}
+
+/// How recorded pixels become ideal ones, and how large those are.
+#[derive(Debug, Clone)]
+pub enum Correction {
+    /// As the picture of a plate shows.
+    Plate(PathBuf),
+    /// As a distortion table says; the size of a pixel in mm.
+    Table(PathBuf, f64),
+    /// Not at all; the size of a pixel in mm.
+    None(f64),
+}
+
+/// The plate of the calibration pictures.
+#[derive(Debug, Clone)]
+pub struct Plate {
+    /// Its spots.
+    pub pattern: PlateSource,
+    /// Whether they are bright or dark.
+    pub spots: Look,
+}
+
+/// Where a plate's spots are said to be.
+#[derive(Debug, Clone)]
+pub enum PlateSource {
+    /// In a file.
+    List(PathBuf),
+    /// On a grid; its pitch in mm.
+    Grid(Grid, f64),
+}
+
+/// The frame of beads of the calibration pictures.
+#[derive(Debug, Clone)]
+pub struct Beads {
+    /// Where its beads are.
+    pub list: PathBuf,
+    /// Unit of that file.
+    pub units: Units,
+    /// XMALab's file of reference beads.
+    pub references: Option<PathBuf>,
+    /// Whether they are dark or bright.
+    pub spots: Look,
 }
 
 /// One bone or implant part.
@@ -100,6 +175,17 @@ impl Study {
     /// Where a person's own poses are read from; a run never writes there.
     pub fn edits(&self) -> PathBuf {
         self.root.join("edits").join("poses.csv")
+    }
+
+    /// Where a person's own correspondences of a view's plate or bead pictures are read from (`plate_A.csv`, `beads_A.csv`); a
+    /// run never writes there.
+    pub fn clicks(&self, what: &str, view: &str) -> PathBuf {
+        self.root.join("edits").join(format!("{what}_{view}.csv"))
+    }
+
+    /// Whether the fluoroscopes are found from raw pictures.
+    pub fn calibrates(&self) -> bool {
+        self.views.iter().any(|v| matches!(v.source, ViewSource::Pictures { .. }))
     }
 
     /// The folder of the store and of the index of inputs.
@@ -160,7 +246,20 @@ struct Check {
 
 impl Check {
     fn study(&mut self, file: PipelineFile) -> Study {
-        let PipelineFile { study, fluoroscope, body, trial, segment, matching, output } = file;
+        let PipelineFile {
+            study,
+            fluoroscope,
+            plate,
+            beads,
+            spots,
+            distortion,
+            environment,
+            body,
+            trial,
+            segment,
+            matching,
+            output,
+        } = file;
         let name = study.name;
         self.names("fluoroscope", fluoroscope.0.iter().map(|(n, _)| n));
         self.names("body", body.iter().map(|b| &b.name));
@@ -177,16 +276,12 @@ impl Check {
                 );
             }
         }
-        let views: Vec<View> = fluoroscope
-            .0
-            .into_iter()
-            .map(|(name, f)| View {
-                name: name.into_inner(),
-                calibration: self.file(&f.calibration, "calibration"),
-                pixel_origin: f.pixel_origin,
-                distortion: f.distortion.map(|d| self.file(&d, "distortion table")),
-            })
-            .collect();
+        let used = |f: &FluoroscopeSection| (f.plate.is_some(), f.beads.is_some());
+        let used = fluoroscope.0.iter().map(|(_, f)| used(f));
+        let (plates, frames) = used.fold((false, false), |(p, b), (plate, beads)| (p || plate, b || beads));
+        let plate = self.plate(plate, plates);
+        let beads = self.beads(beads, frames);
+        let views = self.views(fluoroscope, plate.is_some(), beads.is_some());
         let bodies: Vec<Body> = body
             .into_iter()
             .map(|b| Body { mesh: self.file(&b.mesh, "mesh"), name: b.name.into_inner(), units: b.units })
@@ -199,7 +294,182 @@ impl Check {
                     .help("such as folder = \"results\""),
             );
         }
-        Study { root: self.root.clone(), name, views, bodies, trials, segment, matching, output: folder }
+        Study {
+            root: self.root.clone(),
+            name,
+            views,
+            bodies,
+            trials,
+            plate,
+            beads,
+            spots,
+            distortion,
+            environment,
+            segment,
+            matching,
+            output: folder,
+        }
+    }
+
+    fn plate(&mut self, section: Option<toml::Spanned<PlateSection>>, used: bool) -> Option<Plate> {
+        let section = section?;
+        let span = section.span();
+        if !used {
+            let problem = Problem::at(span.clone(), "no fluoroscope has a picture of this plate");
+            self.list.push(problem.help("name it: plate = \"calibration/plate_A.png\" in [fluoroscope.A]"));
+        }
+        let PlateSection { list, pattern, pitch_mm, spots } = section.into_inner();
+        let pattern = match (list, pattern, pitch_mm) {
+            (Some(list), None, None) => PlateSource::List(self.file(&list, "list of holes")),
+            (None, Some(grid), Some(pitch)) => PlateSource::Grid(grid, self.length(&pitch, "a pitch")?),
+            _ => {
+                let problem = Problem::at(span, "it is not clear where the plate's holes are");
+                self.list.push(problem.help(
+                    "give either list = \"plate.csv\", or a grid: pattern = \"square\" (or \"hexagonal\") and pitch_mm = 10.0",
+                ));
+                return None;
+            }
+        };
+        Some(Plate { pattern, spots })
+    }
+
+    fn beads(&mut self, section: Option<toml::Spanned<BeadsSection>>, used: bool) -> Option<Beads> {
+        let section = section?;
+        if !used {
+            let problem = Problem::at(section.span(), "no fluoroscope has a picture of these beads");
+            self.list.push(problem.help("name it: beads = \"calibration/beads_A.png\" in [fluoroscope.A]"));
+        }
+        let BeadsSection { list, units, references, spots } = section.into_inner();
+        let list = self.file(&list, "list of beads");
+        Some(Beads {
+            list,
+            units,
+            references: references.map(|r| self.file(&r, "file of reference beads")),
+            spots,
+        })
+    }
+
+    /// A length in mm above zero.
+    fn length(&mut self, value: &toml::Spanned<f64>, what: &str) -> Option<f64> {
+        let mm = *value.get_ref();
+        if mm.is_finite() && mm > 0.0 {
+            return Some(mm);
+        }
+        self.list.push(Problem::at(value.span(), format!("{what} of {mm} mm cannot be")));
+        None
+    }
+
+    fn views(&mut self, sections: InOrder<FluoroscopeSection>, plate: bool, beads: bool) -> Vec<View> {
+        let mut views = Vec::new();
+        // The first view that has bead pictures, and how many.
+        let mut placings: Option<(String, usize)> = None;
+        let mut kinds = [None, None];
+        for (name, section) in sections.0 {
+            let FluoroscopeSection { beads: pictures, plate: on_plate, pixel_mm, calibration, pixel_origin, distortion } =
+                section;
+            kinds[usize::from(pictures.is_some())].get_or_insert_with(|| name.clone());
+            if let Some(plated) = on_plate.as_ref().filter(|_| !plate) {
+                let problem = Problem::at(plated.span(), "it is not said what this plate is");
+                self.list.push(problem.help("add a table [plate] with `list`, or `pattern` and `pitch_mm`"));
+            }
+            let source = match (calibration, pictures) {
+                (Some(calibration), None) => {
+                    if let Some(plate) = &on_plate {
+                        self.list.push(
+                            Problem::at(plate.span(), "a plate does not go with another program's calibration").help(
+                                "what a calibration file says holds for that program's own corrected pixels: give its \
+                                 corrected pictures, or a `distortion` table, or calibrate here from pictures of `beads`",
+                            ),
+                        );
+                    }
+                    Some(ViewSource::File {
+                        calibration: self.file(&calibration, "calibration"),
+                        pixel_origin,
+                        distortion: distortion.map(|d| self.file(&d, "distortion table")),
+                    })
+                }
+                (None, Some(OneOrMore(pictures))) => {
+                    let first = pictures.first().map_or(name.span(), toml::Spanned::span);
+                    if !beads {
+                        let problem = Problem::at(first.clone(), "it is not said where these beads are");
+                        self.list.push(problem.help("add a table [beads] with `list`"));
+                    }
+                    let (other, count) =
+                        placings.get_or_insert_with(|| (name.get_ref().clone(), pictures.len())).clone();
+                    if count != pictures.len() || pictures.is_empty() {
+                        let found = pictures.len();
+                        self.list.push(
+                            Problem::at(first, format!("{found} picture(s) of beads, but fluoroscope {other} has {count}"))
+                                .help("each placing of the frame needs a picture of every fluoroscope, in the same order"),
+                        );
+                    }
+                    let beads = pictures.iter().map(|p| self.file(p, "picture of beads")).collect();
+                    let correction = self.correction(&name, on_plate, distortion, pixel_mm);
+                    correction.map(|correction| ViewSource::Pictures { beads, correction })
+                }
+                (calibration, _) => {
+                    let both = calibration.is_some();
+                    let text = if both {
+                        "says twice where it stands: `calibration` and `beads`"
+                    } else {
+                        "does not say where it stands"
+                    };
+                    self.list.push(
+                        Problem::at(name.span(), format!("fluoroscope {} {text}", name.get_ref())).help(
+                            "give either beads = \"a picture of the frame of beads\" (and plate = \"a picture of the plate\"), or \
+                             calibration = \"a calibration file\"",
+                        ),
+                    );
+                    None
+                }
+            };
+            views.extend(source.map(|source| View { name: name.into_inner(), source }));
+        }
+        if let [Some(file), Some(pictures)] = &kinds {
+            self.list.push(
+                Problem::at(
+                    file.span(),
+                    format!("{} has no pictures of beads, but {} has", file.get_ref(), pictures.get_ref()),
+                )
+                .help("all fluoroscopes are found from one frame of beads, or all come from calibration files"),
+            );
+        }
+        views
+    }
+
+    fn correction(
+        &mut self,
+        name: &Located,
+        plate: Option<Located>,
+        distortion: Option<Located>,
+        pixel_mm: Option<toml::Spanned<f64>>,
+    ) -> Option<Correction> {
+        let pixel = pixel_mm.as_ref().and_then(|p| self.length(p, "a pixel"));
+        match (plate, distortion, pixel_mm) {
+            (Some(plate), None, None) => Some(Correction::Plate(self.file(&plate, "picture of the plate"))),
+            (Some(plate), distortion, _) => {
+                let (what, why) = match distortion {
+                    Some(_) => ("distortion", "the distortion"),
+                    None => ("pixel_mm", "the size of a pixel"),
+                };
+                self.list.push(
+                    Problem::at(plate.span(), format!("the plate shows {why} already"))
+                        .help(format!("remove `{what}`, or `plate`")),
+                );
+                None
+            }
+            (None, _, None) => {
+                self.list.push(
+                    Problem::at(name.span(), format!("the size of a pixel of {} is not known", name.get_ref())).help(
+                        "give plate = \"a picture of the plate\", or for corrected pictures pixel_mm, the side of a pixel on the \
+                         detector in mm",
+                    ),
+                );
+                None
+            }
+            (None, Some(table), Some(_)) => Some(Correction::Table(self.file(&table, "distortion table"), pixel?)),
+            (None, None, Some(_)) => Some(Correction::None(pixel?)),
+        }
     }
 
     fn trial(&mut self, trial: TrialSection, views: &[View], bodies: &[Body]) -> Trial {

@@ -19,6 +19,7 @@
 //! verdict says what speaks against a pose, from the fit alone.
 
 mod bingham;
+mod consistency;
 mod field;
 mod judge;
 mod refine;
@@ -28,6 +29,7 @@ mod starts;
 pub use bingham::{
     BinghamParams, BinghamView, Contour, Descent, best, descend, match_bingham, own_contour, spread,
 };
+pub use consistency::{Disagreement, disagreement, pose_covariance_of_calibration};
 pub use field::EdgeField;
 pub use judge::{Limits, judge};
 pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};

@@ -99,18 +99,18 @@ impl Refined {
 /// beside bone or cement that are off as a whole, not noise of single pixels. Two residuals nearer than this say the same
 /// thing twice. 150 px gives a mean squared error over the stated covariance of 6.8 (femoral component) and 3.8 (tray) on
 /// the simulated knee, where 6 would be right (`cargo xtask validate --only simulated`).
-const CORRELATION_PX: f64 = 150.0;
+pub(crate) const CORRELATION_PX: f64 = 150.0;
 
 /// One outline sample that found an edge.
-struct Row {
+pub(crate) struct Row {
     /// Along the outline's normal, px.
-    residual: f64,
+    pub(crate) residual: f64,
     /// Its derivative by the twist, px per mm and px per rad.
-    derivative: Vector6<f64>,
+    pub(crate) derivative: Vector6<f64>,
     /// Size of a pixel at its depth.
     mm_per_px: f64,
     /// Length of the outline it stands for, px.
-    length: f64,
+    pub(crate) length: f64,
 }
 
 /// Weighted normal equations of one step, in mm^2: sums over rows of weight, derivative and residual.
@@ -125,7 +125,7 @@ struct Normal {
 
 /// Buffers of a descent, used again from step to step.
 #[derive(Default)]
-struct Buffers {
+pub(crate) struct Buffers {
     outline: Outline,
     rows: Vec<Row>,
     /// Rows of each view: where they end, and the view's inset.
@@ -135,7 +135,7 @@ struct Buffers {
 
 impl Buffers {
     /// The rows of each view with its inset.
-    fn by_view(&self) -> impl Iterator<Item = (&[Row], f64)> {
+    pub(crate) fn by_view(&self) -> impl Iterator<Item = (&[Row], f64)> {
         let starts = std::iter::once(0).chain(self.views.iter().map(|v| v.0));
         starts.zip(&self.views).map(|(start, &(end, inset))| (&self.rows[start..end], inset))
     }
@@ -171,7 +171,7 @@ pub fn assess(mesh: &RimMesh, views: &[View], pose: &Pose, params: &RefineParams
 }
 
 /// Fills the rows of all views.
-fn collect(
+pub(crate) fn collect(
     mesh: &RimMesh,
     views: &[View],
     pose: &Pose,
@@ -258,11 +258,12 @@ fn collect_view(
 }
 
 /// Geman and McClure's weight of a residual.
-fn robust_weight(scale_squared: f64, residual: f64) -> f64 {
+pub(crate) fn robust_weight(scale_squared: f64, residual: f64) -> f64 {
     (scale_squared / (scale_squared + residual * residual)).powi(2)
 }
 
-fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64) -> Normal {
+/// Square of the robust weight's scale, px^2.
+pub(crate) fn robust_scale_squared(buffers: &mut Buffers, radius: f64) -> f64 {
     let mut sizes = std::mem::take(&mut buffers.sizes);
     sizes.clear();
     for (rows, inset) in buffers.by_view() {
@@ -271,12 +272,17 @@ fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64) -> Normal
     // 1.4826 turns a median size into a standard deviation; residuals beyond about 2.5 of them lose their weight.
     let scale = (2.5 * 1.4826 * median(&mut sizes)).clamp(LEAST_SCALE_PX, (radius / 2.0).max(LEAST_SCALE_PX));
     buffers.sizes = sizes;
+    scale * scale
+}
+
+fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64) -> Normal {
+    let scale_squared = robust_scale_squared(buffers, radius);
     let mut normal = Normal {
         matrix: Matrix6::zeros(),
         vector: Vector6::zeros(),
         weight: 0.0,
         squared: 0.0,
-        scale_squared: scale * scale,
+        scale_squared,
     };
     for (rows, inset) in buffers.by_view() {
         // Sums over the view of weight, weight times residual, weight times derivative: its inset's row.

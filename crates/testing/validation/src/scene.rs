@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use biplane::calibrate::{CalibrateError, Way, calibrate};
 use biplane::prepare::{InputErrors, Prepared};
 use biplane::study::{Study, StudyError};
 use biplane::tables::same_frame;
@@ -16,6 +17,7 @@ use biplane_geometry::{Mesh, Pose};
 use biplane_optimisation::{EdgeField, MatchParams, View};
 use biplane_outline::RimMesh;
 use biplane_segmentation::{SegmentError, curves};
+use biplane_stage::{Context, Store, StoreError};
 use rayon::prelude::*;
 
 /// One body over the frames of a study.
@@ -93,6 +95,15 @@ pub enum SceneError {
     /// Its inputs.
     #[error(transparent)]
     Inputs(#[from] InputErrors),
+    /// No folder to calibrate in.
+    #[error("no temporary folder: {0}")]
+    Folder(std::io::Error),
+    /// The store in it.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Its raw calibration pictures.
+    #[error(transparent)]
+    Calibrate(#[from] CalibrateError),
     /// A frame.
     #[error(transparent)]
     Image(#[from] ImageError),
@@ -176,12 +187,18 @@ impl Scene {
     /// # Errors
     /// The first thing that cannot be read.
     pub fn load(pipeline: &Path, body: &str, reference: &Path) -> Result<Self, SceneError> {
-        let prepared = Prepared::of(Study::load(pipeline)?)?;
+        let mut prepared = Prepared::of(Study::load(pipeline)?)?;
+        // Nothing of the study's own results is used or touched: raw calibration pictures are calibrated from anew.
+        let folder = tempfile::tempdir().map_err(SceneError::Folder)?;
+        prepared.study.output = folder.path().join("results");
+        let store = Store::open(&folder.path().join("store"))?;
+        let (calibrated, _) = calibrate(&prepared, &store, &Context::new(), Way::Run(Vec::new()));
+        let calibrated = calibrated?.unwrap_or_default();
         let (index, mesh) = read_body(&prepared, pipeline, body)?;
         let poses = read_reference(reference)?;
         let study = &prepared.study;
         let fluoroscopes: Vec<Fluoroscope> =
-            prepared.calibrations.iter().map(|c| Fluoroscope::from(&**c)).collect();
+            calibrated.calibrations.iter().map(|c| Fluoroscope::from(&**c)).collect();
         let wanted: Vec<_> = prepared
             .jobs
             .iter()

@@ -1,0 +1,128 @@
+//! Whether a calibration still fits matched frames, and what its uncertainty does to a pose.
+//!
+//! **Between two views.** A point seen from two sources lies in one plane with them. Moving a body along the normal of that plane
+//! moves both its outlines, so both views measure where the body is along it, and the pose can only halve what they disagree about.
+//! Each view's edges are fitted by a shift of the outline (two components across the view, and the inset); the difference of the
+//! shifts along the normal is the **disagreement**: zero but for noise where the calibration fits, whatever the pose. It is the
+//! epipolar residual of outlines, in mm at the body. Errors of calibration within the plane move the pose instead, and cannot be seen
+//! in this way.
+//!
+//! **Of a pose.** With outlines `r(pose, c) = 0` and calibration parameters `c` of covariance `S`, the pose that a wrong `c` gives is
+//! off by `-(J' W J)^-1 J' W B dc`, `J` and `B` being the derivatives of the outlines along their normals by pose and by `c`.
+
+use biplane_geometry::{Point3, Pose, Vector3};
+use biplane_outline::{Outline, RimMesh, Sampling};
+use nalgebra::{DMatrix, Matrix2xX, Matrix3, Matrix6, RowDVector, Vector3 as Column3, Vector6};
+
+use crate::View;
+use crate::refine::{Buffers, CORRELATION_PX, RefineParams, collect, robust_scale_squared, robust_weight};
+
+/// How far two views disagree about where a body is, along the normal of the plane through it and both sources.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disagreement {
+    /// The first view's place less the second's, mm.
+    pub mm: f64,
+    /// Its standard deviation from the residuals of the outlines, mm.
+    pub sigma_mm: f64,
+}
+
+/// How two views disagree about a body at a pose that was matched in both; `None` where edges hold too little of an outline,
+/// or the sources and the body lie in a line.
+pub fn disagreement(
+    mesh: &RimMesh,
+    views: &[View],
+    pose: &Pose,
+    params: &RefineParams,
+) -> Option<Disagreement> {
+    let [first, second] = views else { return None };
+    let centre = pose.transform(mesh.centroid());
+    let [to_first, to_second] = [first, second].map(|v| centre - v.fluoroscope.source());
+    let normal = to_first.cross(&to_second).try_normalize(1e-6 * to_first.norm() * to_second.norm())?;
+    let mut buffers = Buffers::default();
+    collect(mesh, views, pose, params.final_search_px, true, params, &mut buffers);
+    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px);
+    let mut places = Vec::new();
+    for ((rows, inset), ray) in buffers.by_view().zip([to_first, to_second]) {
+        let across = normal.cross(&ray).try_normalize(0.0)?;
+        let (mut matrix, mut spread, mut vector) = (Matrix3::zeros(), Matrix3::zeros(), Column3::zeros());
+        let (mut weights, mut squared) = (0.0, 0.0);
+        let column = |row: &crate::refine::Row| {
+            let gradient = Vector3::new(row.derivative[0], row.derivative[1], row.derivative[2]);
+            // The inset is fitted again, since shift and inset share what an incomplete outline says.
+            Column3::new(gradient.dot(&normal), gradient.dot(&across), 1.0)
+        };
+        for row in rows {
+            let weight = row.length * robust_weight(scale_squared, row.residual - inset);
+            let c = column(row);
+            matrix += c * c.transpose() * weight;
+            vector += c * (weight * row.residual);
+        }
+        let inverse = matrix.try_inverse()?;
+        let solution = inverse * vector;
+        for row in rows {
+            let robust = robust_weight(scale_squared, row.residual - inset);
+            let c = column(row);
+            squared += row.length * robust * (row.residual - c.dot(&solution)).powi(2);
+            weights += row.length * robust;
+            spread += c * c.transpose() * (row.length * robust * robust * CORRELATION_PX);
+        }
+        if weights <= 0.0 {
+            return None;
+        }
+        let covariance = inverse * spread * inverse * (squared / weights);
+        places.push((solution.x, covariance[(0, 0)]));
+    }
+    let [(a, variance_a), (b, variance_b)] = places[..] else { return None };
+    let found = Disagreement { mm: a - b, sigma_mm: (variance_a + variance_b).sqrt() };
+    (found.mm.is_finite() && found.sigma_mm.is_finite()).then_some(found)
+}
+
+/// Covariance of a pose (as [`biplane_artifact::Match`] orders it, about the body's centroid) that a calibration's covariance brings,
+/// for outlines that are seen whole; `None` where they do not hold the pose.
+///
+/// `derivative(view, point)` gives the derivative of the ideal pixel of a laboratory point in a view by all calibration parameters
+/// (2 x n), in the order of `covariance` (n x n).
+pub fn pose_covariance_of_calibration(
+    mesh: &RimMesh,
+    views: &[View],
+    pose: &Pose,
+    covariance: &DMatrix<f64>,
+    derivative: impl Fn(usize, &Point3) -> Option<Matrix2xX<f64>>,
+) -> Option<Matrix6<f64>> {
+    let parameters = covariance.nrows();
+    let centre = pose.transform(mesh.centroid());
+    let mut outline = Outline::new();
+    let mut normal = Matrix6::zeros();
+    let mut mixed = DMatrix::<f64>::zeros(6, parameters);
+    for (number, view) in views.iter().enumerate() {
+        outline.trace(mesh, pose, &view.fluoroscope, Sampling { step_px: 4.0 });
+        // The inset of a view takes up what is common to its outline.
+        let (mut sum, mut by_pose, mut by_parameters) =
+            (0.0, Vector6::zeros(), RowDVector::<f64>::zeros(parameters));
+        for point in outline.points() {
+            if !view.fluoroscope.on_image(&point.pixel, 2.0) {
+                continue;
+            }
+            let Some((_, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else { continue };
+            let Some(by_calibration) = derivative(number, &point.world) else { continue };
+            let gradient = by_point.transpose() * point.normal;
+            let turn = (point.world - centre).cross(&gradient);
+            let own = Vector6::new(gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z);
+            let moved = by_calibration.row(0) * point.normal.x + by_calibration.row(1) * point.normal.y;
+            let weight = point.length_px;
+            normal += own * own.transpose() * weight;
+            mixed += own * &moved * weight;
+            sum += weight;
+            by_pose += own * weight;
+            by_parameters += &moved * weight;
+        }
+        if sum > 0.0 {
+            normal -= by_pose * by_pose.transpose() / sum;
+            mixed -= by_pose * by_parameters / sum;
+        }
+    }
+    let answer = -(normal.try_inverse()? * mixed);
+    let found = &answer * covariance * answer.transpose();
+    let found = Matrix6::from_fn(|i, j| found[(i, j)]);
+    found.iter().all(|v| v.is_finite()).then_some(found)
+}
