@@ -5,6 +5,8 @@ use biplane_stage::{Context, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::{EnvironmentError, find_environment};
+
 inputs! {
     /// All pictures of one frame of beads.
     pub struct EnvironmentInputs {
@@ -38,19 +40,6 @@ impl Default for EnvironmentParams {
     }
 }
 
-/// Why there are no fluoroscopes.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum EnvironmentError {
-    /// Too few beads.
-    #[error("view {view}: {found} beads found, at least 6 are needed")]
-    TooFew {
-        /// Which.
-        view: String,
-        /// How many.
-        found: usize,
-    },
-}
-
 /// The stage `environment`.
 #[derive(Debug, Clone, Copy)]
 pub struct FindEnvironment;
@@ -72,19 +61,4 @@ impl Stage for FindEnvironment {
         let spots: Vec<&Spots> = inputs.spots.iter().map(|s| &**s).collect();
         find_environment(&detectors, &spots, &inputs.beads, inputs.clicks.first().map(|c| &**c), params)
     }
-}
-
-/// The fluoroscopes that pictures of a frame of beads show; `spots` is set by set, view by view within a set.
-///
-/// # Errors
-/// See [`EnvironmentError`].
-pub fn find_environment(
-    detectors: &[&Detector],
-    spots: &[&Spots],
-    _beads: &BeadList,
-    _clicks: Option<&BeadClicks>,
-    _params: &EnvironmentParams,
-) -> Result<Environment, EnvironmentError> {
-    let view = detectors.first().map_or(String::new(), |d| d.view.clone());
-    Err(EnvironmentError::TooFew { view, found: spots.first().map_or(0, |s| s.spots.len()) })
 }
