@@ -1,6 +1,8 @@
 //! Measures the product against truth or references it did not make: its own stages, on scenes with known poses, from
 //! seeded starts. Accuracy is a distribution: median, 95 %, worst, and what failed.
 
+mod bead_scenes;
+mod bound;
 mod document;
 pub mod elsewhere;
 mod faults;
@@ -8,10 +10,13 @@ pub mod knee;
 pub mod lab;
 pub mod outcome;
 pub mod pictures;
+mod plates;
 pub mod plot;
 mod relative;
 mod scene;
 pub mod sections;
+mod setups;
+mod simulated_calibration;
 mod starts;
 pub mod summary;
 mod table;

@@ -1,7 +1,9 @@
 //! The sections of `docs/validation.md`, in its order: what `cargo xtask validate` measures.
 
 mod coverage;
+mod distortion;
 mod end_to_end;
+mod environment;
 mod ideal;
 mod moved;
 mod natural;
@@ -34,6 +36,8 @@ pub const ALL: &[(&str, Measure)] = &[
     ("spheres", spheres::measure),
     ("moved", moved::measure),
     ("views", views::measure),
+    ("distortion", distortion::measure),
+    ("environment", environment::measure),
     ("end-to-end", end_to_end::measure),
     ("budget", end_to_end::budget),
     ("sweeps", sweeps::measure),
