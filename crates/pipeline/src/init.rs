@@ -250,15 +250,15 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
         missing.push("pictures: no folder of images, and no file with many, was found".to_owned());
     }
     for view in &views {
-        let own = found.calibrations.iter().find(|(path, format)| match format {
-            CalibrationFormat::MayaCam2 => speaks_of(path, view),
-            CalibrationFormat::PlaneJson => true,
-        });
+        let own = found
+            .calibrations
+            .iter()
+            .find(|(path, format)| !format.has_one_view() || speaks_of(path, view));
         let _ = writeln!(out, "[fluoroscope.{view}]");
         match own {
             Some((path, format)) => {
                 let _ = writeln!(out, "calibration = {}", quoted(path));
-                if *format == CalibrationFormat::MayaCam2 {
+                if format.leaves_pixel_origin_open() {
                     out += "pixel_origin = \"centre\"   # or \"corner\": where the file counts pixels from; it does not say\n";
                 }
             }

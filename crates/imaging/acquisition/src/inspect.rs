@@ -6,13 +6,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use biplane_artifact::{Calibration, DistortionTable, Frame, PixelOrigin, PlatePattern};
-use nalgebra::{Matrix3, Vector3};
+use biplane_artifact::{DistortionTable, Frame, PixelOrigin, PlatePattern};
+use nalgebra::Vector3;
 
 use crate::beads::{BeadFile, BeadFormat, read_bead_list};
+use crate::calibration::camera::Camera;
 use crate::calibration::{
-    CalibrationError, CalibrationFormat, is_distortion_csv, plane_views, read_calibration,
-    read_distortion_csv, read_text,
+    CalibratedView, CalibrationError, CalibrationFormat, CalibrationSet, ReadOptions, is_distortion_csv,
+    parse, read_distortion_csv, read_text,
 };
 use crate::frames::{FramesError, list_frames};
 use crate::images::{ImageError, ImageFile, ImageFormat, ImageInfo};
@@ -62,8 +63,8 @@ pub enum InspectError {
     },
     /// None of the kinds known.
     #[error(
-        "{} is none of the files this program reads: images (PNG, TIFF, DICOM, JPEG, BMP), calibrations (MayaCam 2.0, \
-         detector plane as JSON, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL)", path.display()
+        "{} is none of the files this program reads: images (PNG, TIFF, DICOM, JPEG, BMP), calibrations (MayaCam, \
+         JointTrack, source and plane as JSON, four points, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL)", path.display()
     )]
     Unknown {
         /// The file.
@@ -107,8 +108,7 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
     let unknown = || InspectError::Unknown { path: path.to_owned() };
     match read_text(path) {
         Ok(text) => match CalibrationFormat::of_text(&text) {
-            Some(CalibrationFormat::MayaCam2) => maya_cam(path),
-            Some(CalibrationFormat::PlaneJson) => planes(path, &text),
+            Some(_) => calibration(path, &text),
             None if is_distortion_csv(&text) => Ok(distortion(&read_distortion_csv(path)?)),
             None if is_plate_list(&text) => Ok(plate(&read_plate_list(path)?)),
             None => match BeadFormat::of_text(&text) {
@@ -160,68 +160,115 @@ fn image_lines(d: &mut Description, info: &ImageInfo, frame: &Frame) {
     d.line("levels of the first frame", format!("{min} to {max}, mean {mean:.1}; larger is brighter"));
 }
 
-fn maya_cam(path: &Path) -> Result<Description, InspectError> {
-    let mut d = Description::new("calibration, MayaCam 2.0 (one fluoroscope)");
-    let calibration = read_calibration(path, "", PixelOrigin::Centre)?;
-    camera(&mut d, "", &calibration);
-    d.line("distance of source and detector", "not in this format");
-    d.line(
-        "pixel origin",
-        "not in this format: shown as if the centre of the first pixel were (0, 0); `pixel_origin` sets it",
-    );
-    Ok(d)
-}
+/// Shown for a format that does not say how many pixels a picture has.
+const NOMINAL_SIZE: [usize; 2] = [1024, 1024];
 
-fn planes(path: &Path, text: &str) -> Result<Description, InspectError> {
-    let views = plane_views(path, text)?;
-    let mut d = Description::new("calibration, source and detector plane as JSON");
-    d.line("fluoroscopes", views.join(", "));
-    d.line("pixel origin", "does not matter in this format: it gives the middle of the picture");
-    for view in views {
-        let calibration = read_calibration(path, &view, PixelOrigin::Centre)?;
-        camera(&mut d, &format!("{view}: "), &calibration);
+fn calibration(path: &Path, text: &str) -> Result<Description, InspectError> {
+    let options = ReadOptions { pixel_origin: PixelOrigin::Centre, size: Some(NOMINAL_SIZE) };
+    let CalibrationSet { format, views } = parse(path, text, &options)?;
+    let one = if format.has_one_view() { " (one fluoroscope)" } else { "" };
+    let mut d = Description::new(format!("calibration, {}{one}", format.name()));
+    if !format.has_one_view() {
+        let names: Vec<&str> = views.iter().map(|v| v.calibration.view.as_str()).collect();
+        d.line("fluoroscopes", names.join(", "));
+    }
+    let (frame, pixels) = conventions(format);
+    d.line("frame", frame);
+    d.line("pixel origin", pixels);
+    let says_size = !matches!(format, CalibrationFormat::JointTrack | CalibrationFormat::JointTrackBiplane);
+    for view in &views {
+        let name = &view.calibration.view;
+        let prefix = if name.is_empty() { String::new() } else { format!("{name}: ") };
+        camera(&mut d, &prefix, view, says_size);
+    }
+    if let [a, b, ..] = views.as_slice() {
+        let middle = |v: &CalibratedView| v.calibration.size.map(|n| (n as f64 - 1.0) / 2.0);
+        let [from_a, from_b] = [a, b].map(|v| Camera::of(&v.calibration).ray(middle(v)));
+        let names = format!("{} and {}", a.calibration.view, b.calibration.view);
+        let angle = from_a.angle(&from_b).to_degrees();
+        d.line(
+            format!("angle between {names}"),
+            format!("{angle:.2} degrees, of the rays to the pictures' middles"),
+        );
+        let apart = (Vector3::from(a.calibration.source) - Vector3::from(b.calibration.source)).norm();
+        d.line("sources", format!("{apart:.2} mm apart"));
     }
     Ok(d)
 }
 
-/// Takes `matrix = K R` apart again: `w` is a depth, so the third row is the unit normal.
-fn camera(d: &mut Description, prefix: &str, calibration: &Calibration) {
-    let Calibration { view: _, size, source, matrix, distortion } = calibration;
-    let m = Matrix3::from_fn(|i, j| matrix[i][j]);
-    let rows = [0, 1, 2].map(|i| m.row(i).transpose());
-    let normal: Vector3<f64> = rows[2];
-    let (cx, cy) = (rows[0].dot(&normal), rows[1].dot(&normal));
-    let y = rows[1] - normal * cy;
-    let fy = y.norm();
-    let x = rows[0] - normal * cx;
-    let skew = x.dot(&y) / fy;
-    let fx = (x - y * (skew / fy)).norm();
+/// Which frame and axes a format has, and where it counts pixels from.
+fn conventions(format: CalibrationFormat) -> (&'static str, &'static str) {
+    match format {
+        CalibrationFormat::MayaCam2 => (
+            "the laboratory's, mm; the camera's axes are OpenCV's (x right, y down, z away from the source), right-handed",
+            "not in this format: shown as if the centre of the first pixel were (0, 0); `pixel_origin` sets it",
+        ),
+        CalibrationFormat::MayaCam1 => (
+            "the laboratory's, taken as mm; the camera's axes are x right, y up, z towards the source, right-handed",
+            "counted from 1, rows upward; shown as if the centre of the first pixel were (1, 1); `pixel_origin` sets it",
+        ),
+        CalibrationFormat::JointTrack => (
+            "the camera is the world, mm: x right, y up, z towards the source, right-handed",
+            "offsets from half the width and height, rows upward; shown as if the centre of the first pixel were (0, 0)",
+        ),
+        CalibrationFormat::JointTrackBiplane => (
+            "camera A is the world, mm: x right, y up, z towards the source, right-handed",
+            "offsets from half the width and height, rows upward; shown as if the centre of the first pixel were (0, 0)",
+        ),
+        CalibrationFormat::PlaneJson => {
+            ("the laboratory's, mm", "does not matter in this format: it gives the middle of the picture")
+        }
+        CalibrationFormat::FourPoints => ("the laboratory's, mm", "centre of the first pixel at (0, 0)"),
+        CalibrationFormat::Environment => {
+            ("that of the beads, mm", "centre of the first pixel at (0, 0), of corrected pictures")
+        }
+    }
+}
+
+fn camera(d: &mut Description, prefix: &str, view: &CalibratedView, says_size: bool) {
+    let camera = Camera::of(&view.calibration);
+    let Camera { focal: [fx, fy], skew, principal: [cx, cy], axes, source } = camera;
+    let normal = axes.row(2).transpose();
     let triple =
-        |v: &[f64; 3], digits: usize| format!("({:.digits$}, {:.digits$}, {:.digits$})", v[0], v[1], v[2]);
+        |v: &Vector3<f64>, digits: usize| format!("({:.digits$}, {:.digits$}, {:.digits$})", v.x, v.y, v.z);
     let mut line = |label: &str, value: String| d.line(format!("{prefix}{label}"), value);
-    line("size", format!("{} x {} px (columns x rows)", size[0], size[1]));
-    let far = Vector3::from(*source).norm();
-    line("source", format!("{} mm, {far:.1} mm from the laboratory's origin", triple(source, 3)));
+    let [columns, rows] = view.calibration.size;
+    let size = format!("{columns} x {rows} px");
+    line(
+        "size",
+        if says_size {
+            format!("{size} (columns x rows)")
+        } else {
+            format!("not in this format; what follows is for {size}")
+        },
+    );
+    let far = source.norm();
+    line("source", format!("{} mm, {far:.1} mm from the frame's origin", triple(&source, 3)));
+    line(
+        "distance of source and detector",
+        match (view.source_to_detector_mm(), view.pixel_mm) {
+            (Some(distance), Some(pixel)) => format!("{distance:.3} mm, with pixels of {pixel:.6} mm"),
+            _ => "not in this format: it needs the size of a pixel".to_owned(),
+        },
+    );
     line(
         "viewing direction",
-        format!("{} (from the source, at right angles to the detector)", triple(&normal.into(), 4)),
+        format!("{} (from the source, at right angles to the detector)", triple(&normal, 4)),
     );
     line("focal length", format!("{fx:.2} x {fy:.2} px, skew {skew:.3}"));
     line("principal point", format!("({cx:.3}, {cy:.3}) px, the centre of the first pixel being (0, 0)"));
-    line(
-        "picture",
-        if m.determinant() > 0.0 {
-            "as seen from the source"
-        } else {
-            "mirrored: as seen from behind the detector"
-        }
-        .to_owned(),
-    );
-    let corrected = match distortion {
+    let mirrored = axes.determinant() < 0.0;
+    let side =
+        if mirrored { "mirrored: as seen from behind the detector" } else { "as seen from the source" };
+    line("picture", side.to_owned());
+    let corrected = match &view.calibration.distortion {
         None => "none: pictures must be corrected already".to_owned(),
         Some(t) => format!("in the file, sampled here on {} x {} points", t.count[0], t.count[1]),
     };
     line("distortion", corrected);
+    if view.covariance {
+        line("covariance", "in the file".to_owned());
+    }
 }
 
 fn distortion(table: &DistortionTable) -> Description {
@@ -292,7 +339,7 @@ fn radii(radii: impl Iterator<Item = Option<f64>>) -> String {
             return "more than eight different ones".to_owned();
         }
     }
-    counts.sort_by(|a, b| b.1.cmp(&a.1));
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let words = counts.iter().map(|(radius, count)| match radius {
         Some(radius) => format!("{count} of {radius} mm"),
         None => format!("{count} not stated"),

@@ -217,6 +217,32 @@ fn clicks_on_beads_go_by_name() {
 }
 
 #[test]
+fn damaged_lists_never_panic() {
+    let folder = TempDir::new().unwrap();
+    let pattern = read_plate_list(write(&folder, "p.csv", PLATE)).unwrap();
+    let BeadFile { list, .. } = read_beads(&folder, BEADS, LengthUnit::Millimetres).unwrap();
+    let clicks = "bead,hole,x_px,y_px,picture\na1,0,1,2,0\na2,1,3,4,1\n";
+    for text in [PLATE, BEADS, CUBE, "1 origin\n5 up\n", clicks] {
+        for place in (0..text.len()).step_by(7) {
+            for with in [&b""[..], b"-", b"1e308", b"\xff", b"nan", b",", b"\n", b"99999999999999999999"] {
+                let mut damaged = text.as_bytes()[..place].to_vec();
+                if !with.is_empty() {
+                    damaged.extend(with);
+                    damaged.extend(&text.as_bytes()[place + 1..]);
+                }
+                let path = folder.path().join("damaged");
+                std::fs::write(&path, &damaged).unwrap();
+                let _ = read_plate_list(&path);
+                let _ = read_bead_list(&path, LengthUnit::Metres);
+                let _ = read_xmalab_references(&path, &mut list.clone());
+                let _ = read_plate_clicks(&path, &pattern);
+                let _ = read_bead_clicks(&path, 0, &list);
+            }
+        }
+    }
+}
+
+#[test]
 fn lists_are_described() {
     let folder = TempDir::new().unwrap();
     let text = describe(write(&folder, "p.csv", PLATE)).unwrap().to_string();

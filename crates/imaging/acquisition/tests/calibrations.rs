@@ -347,8 +347,7 @@ fn what_is_no_calibration_is_named() {
     };
     for (text, what) in [
         ("", "it is empty"),
-        ("JT_INTCALIB\n1198\n", "JointTrack"),
-        ("1,2,3\n4,5,6\n7,8,9\n1,2,3\n1,1,1\n", "MayaCam 1.0"),
+        ("1,2,3\n4,5,6\n7,8,9\n1,2,3\n", "thesis's matrix of four points"),
         ("hello\n", "its first line is `hello`"),
         ("{}", "JSON without `fluoroscopes`"),
     ] {

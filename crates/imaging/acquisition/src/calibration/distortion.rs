@@ -21,6 +21,18 @@ pub fn read_distortion_csv(path: impl AsRef<Path>) -> Result<DistortionTable, Ca
     parse(path, &read_text(path)?)
 }
 
+/// The table as such a CSV.
+pub fn write_distortion_csv(table: &DistortionTable) -> String {
+    let DistortionTable { first_px, step_px, count, ideal_px } = table;
+    let mut text = COLUMNS.join(",") + "\n";
+    for (place, [ideal_x, ideal_y]) in ideal_px.iter().enumerate() {
+        let [column, row] = [place % count[0], place / count[0]].map(|n| n as f64);
+        let (x, y) = (first_px[0] + step_px[0] * column, first_px[1] + step_px[1] * row);
+        text += &format!("{x},{y},{ideal_x},{ideal_y}\n");
+    }
+    text
+}
+
 pub(crate) fn is_distortion_csv(text: &str) -> bool {
     let header = text.lines().next().unwrap_or_default();
     COLUMNS.iter().all(|c| header.split(',').any(|h| h.trim() == *c))

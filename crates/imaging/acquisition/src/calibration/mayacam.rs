@@ -23,10 +23,9 @@ use std::path::Path;
 use biplane_artifact::{Calibration, DistortionTable, PixelOrigin};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-use super::{CalibrationError, quote, read_text};
-
-/// Pixels a side may have.
-const MAX_SIDE: f64 = 16384.0;
+use super::camera::{Camera, NewWorld, nearest_rotation};
+use super::write::{WriteError, WriteOptions, Written, checked, number};
+use super::{CalibratedView, CalibrationError, MAX_SIDE, quote, read_text};
 
 /// Reads one camera.
 ///
@@ -41,7 +40,7 @@ pub fn read_mayacam2(
     pixel_origin: PixelOrigin,
 ) -> Result<Calibration, CalibrationError> {
     let path = path.as_ref();
-    parse(path, &read_text(path)?, pixel_origin)
+    Ok(parse(path, &read_text(path)?, pixel_origin)?.calibration)
 }
 
 /// Lines that are not empty, with their numbers.
@@ -98,7 +97,11 @@ impl<'a> Lines<'a> {
     }
 }
 
-pub(super) fn parse(path: &Path, text: &str, origin: PixelOrigin) -> Result<Calibration, CalibrationError> {
+pub(super) fn parse(
+    path: &Path,
+    text: &str,
+    origin: PixelOrigin,
+) -> Result<CalibratedView, CalibrationError> {
     let value = |what: String| CalibrationError::Value { path: path.to_owned(), what };
     let mut lines = Lines {
         path,
@@ -173,34 +176,58 @@ pub(super) fn parse(path: &Path, text: &str, origin: PixelOrigin) -> Result<Cali
                 .to_owned(),
         ));
     }
-    let r = if off > 1e-6 { nearest_rotation(r) } else { r };
+    let r = if off > 1e-6 { nearest_rotation(r).0 } else { r };
     if origin == PixelOrigin::Corner {
         k[(0, 2)] -= 0.5;
         k[(1, 2)] -= 0.5;
     }
     let size = [size[0] as usize, size[1] as usize];
-    let distortion = if coefficients.iter().any(|c| *c != 0.0) {
-        Some(Undistortion { k, coefficients }.table(size).map_err(value)?)
-    } else {
-        None
+    let coefficients = coefficients.iter().any(|c| *c != 0.0).then_some(coefficients);
+    let distortion = match coefficients {
+        Some(coefficients) => Some(Undistortion { k, coefficients }.table(size).map_err(value)?),
+        None => None,
     };
     let m = k * r;
-    Ok(Calibration {
+    let calibration = Calibration {
         view: String::new(),
         size,
         source: (-(r.transpose() * t)).into(),
         matrix: [0, 1, 2].map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]),
         distortion,
-    })
+    };
+    Ok(CalibratedView { calibration, pixel_mm: None, coefficients, covariance: false })
 }
 
-/// `U V'` of the singular value decomposition; the matrix is within 1e-3 of a rotation, so it is one.
-fn nearest_rotation(r: Matrix3<f64>) -> Matrix3<f64> {
-    let svd = r.svd(true, true);
-    match (svd.u, svd.v_t) {
-        (Some(u), Some(v_t)) => u * v_t,
-        _ => r,
+/// Writes one view as MayaCam 2.0, laid out line by line as XMALab does.
+///
+/// # Errors
+/// The picture is mirrored, or its distortion is not one of OpenCV's coefficients.
+pub fn write_mayacam2(view: &CalibratedView, options: &WriteOptions) -> Result<Written, WriteError> {
+    const FORMAT: &str = "MayaCam 2.0";
+    let Camera { focal: [fx, fy], skew, principal, axes, source } = Camera::of(&view.calibration);
+    let half = if options.pixel_origin == PixelOrigin::Corner { 0.5 } else { 0.0 };
+    let [cx, cy] = principal.map(|c| c + half);
+    let t = -(axes * source);
+    let row = |values: [f64; 3]| values.map(number).join(",");
+    let [width, height] = view.calibration.size;
+    let mut lines = vec!["image size".to_owned(), format!("{width},{height}"), String::new()];
+    lines.push("camera matrix".to_owned());
+    lines.extend([row([fx, skew, cx]), row([0.0, fy, cy]), row([0.0, 0.0, 1.0]), String::new()]);
+    lines.push("rotation".to_owned());
+    lines.extend((0..3).map(|i| row([axes[(i, 0)], axes[(i, 1)], axes[(i, 2)]])));
+    lines.extend([String::new(), "translation".to_owned()]);
+    lines.extend(t.iter().map(|v| number(*v)));
+    if let Some(coefficients) = view.coefficients.filter(|_| !options.without_distortion) {
+        lines.extend([String::new(), "undistortion".to_owned()]);
+        lines.extend(coefficients.map(number));
     }
+    let text = lines.join("\n") + "\n";
+    let mut lost = Vec::new();
+    if view.pixel_mm.is_some() {
+        lost.push("the size of a pixel, and with it the distance of the detector".to_owned());
+    }
+    let back = parse(Path::new(""), &text, options.pixel_origin).ok();
+    checked(FORMAT, &[(view, back)], &NewWorld::same(), options, lost, text)
 }
 
 /// The camera matrix and `k1 k2 p1 p2 k3 k4 k5 k6`.
