@@ -1,7 +1,7 @@
 //! From a picture to its spots: border, candidates, a first fit of each by itself, a second one that knows its neighbours and the light
 //! around, and the rules by which a fit is a spot.
 
-use biplane_artifact::{Frame, Spot, Spots};
+use biplane_artifact::{Circle, Frame, Spot, Spots};
 
 use crate::border::{border, mirrored_beyond};
 use crate::candidates::{Candidate, candidates};
@@ -20,6 +20,12 @@ const NOISE_WINDOWS: usize = 64;
 const UNEVEN: f64 = 0.015;
 /// Least share of the noise that is left in residuals.
 const LEAST_LEFT: f64 = 0.2;
+
+/// The round border of an intensifier's picture; none where the picture fills its rectangle, or is not what its size says.
+pub fn find_border(frame: &Frame) -> Option<Circle> {
+    let whole = frame.width.checked_mul(frame.height) == Some(frame.samples.len());
+    (whole && !frame.samples.is_empty()).then(|| border(&Grey::of(frame)))?
+}
 
 /// The round spots of a picture.
 ///
@@ -84,8 +90,10 @@ impl Finder<'_> {
             let others = near.about(i, reach);
             let mut window = self.field.window(&own, reach, &others);
             if let Some(ridges) = self.ridges(f, &near.about(i, ground_reach(f) * 1.5)) {
+                let floor = (f.parameters[8] - f.contrast).max(0.0);
                 for px in &mut window.pixels {
-                    px.ground = ridges.light(px.x * own.radius, px.y * own.radius).max(1.0);
+                    px.ground = (ridges.light(px.x * own.radius, px.y * own.radius) - floor).max(1.0);
+                    px.value -= floor;
                 }
             }
             let mut start = f.parameters;

@@ -15,5 +15,5 @@ mod profile;
 mod stage;
 mod window;
 
-pub use find::find_spots;
+pub use find::{find_border, find_spots};
 pub use stage::{FindSpots, Look, SpotError, SpotInputs, SpotParams, SpotSettings};
