@@ -170,7 +170,7 @@ pub(crate) fn mirrored_beyond(grey: &Grey, circle: &Circle) -> Grey {
         for (x, value) in row.iter_mut().enumerate() {
             let dx = x as f64 - cx;
             if dx.abs() > half {
-                let r = dx.hypot(dy).max(1e-9);
+                let r = (dx * dx + dy * dy).sqrt().max(1e-9);
                 let back = (2.0 * rim - r).max(0.0) / r;
                 *value = grey.at(cx + dx * back, cy + dy * back) as f32;
             }

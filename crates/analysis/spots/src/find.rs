@@ -18,6 +18,14 @@ use crate::{Look, SpotError, SpotParams};
 const NOISE_WINDOWS: usize = 64;
 /// Unevenness of the light about a spot, in its contrast, from which on a plane does not do.
 const UNEVEN: f64 = 0.015;
+/// Radius from which on a first fit looks at every second pixel, px.
+const FINE: f64 = 9.0;
+/// Elongation beyond which a spot is two, or part of one.
+const LONGEST: f64 = 1.35;
+/// Residual beyond which a spot is two, or something lies across it, in residuals of the other spots.
+const MISFIT: f64 = 2.5;
+/// Residual that any spot may have, in its contrast.
+const LEAST_MISFIT: f64 = 0.02;
 /// Least share of the noise that is left in residuals.
 const LEAST_LEFT: f64 = 0.2;
 
@@ -66,6 +74,20 @@ struct Found {
     parameters: Parameters,
 }
 
+impl Found {
+    /// Residual in contrasts.
+    fn misfit(&self) -> f64 {
+        self.residual / self.contrast
+    }
+}
+
+/// Median misfit.
+fn usual_misfit(found: &[Found]) -> f64 {
+    let mut all: Vec<f64> = found.iter().map(Found::misfit).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
 struct Finder<'a> {
     field: Field<'a>,
     params: &'a SpotParams,
@@ -80,7 +102,7 @@ impl Finder<'_> {
         let mut places = candidates(even, self.params.look, radii, least);
         places.retain(|c| self.field.depth(c.at) > 0.0);
 
-        let first = distinct(self.alone(&places));
+        let first = distinct(self.alone(&places), &self.field);
 
         let near = Neighbours::of(first.iter().map(|f| f.round), &self.field);
         let correlation = self.correlation(&first, &near);
@@ -88,7 +110,7 @@ impl Finder<'_> {
             let own = near.rounds[i];
             let reach = own.radius + (3.5 * f.blur).max(0.25 * own.radius).max(4.0);
             let others = near.about(i, reach);
-            let mut window = self.field.window(&own, reach, &others);
+            let mut window = self.field.window(&own, reach, &others, 1);
             if let Some(ridges) = self.ridges(f, &near.about(i, ground_reach(f) * 1.5)) {
                 let floor = (f.parameters[8] - f.contrast).max(0.0);
                 for px in &mut window.pixels {
@@ -100,13 +122,14 @@ impl Finder<'_> {
             if window.pixels.iter().any(|px| px.ground != 1.0) {
                 (start[8], start[9], start[10]) = (1.0, 0.0, 0.0);
             }
-            let fit = fit(&window.pixels, &start, 30)?;
+            let fit = fit(&window.pixels, &start, 30, 2e-4)?;
             let found = self.found(&own, &window, &fit, Some(&correlation));
             self.is_spot(&found).then_some(found)
         };
-        let second = distinct(first.iter().enumerate().filter_map(again).collect());
+        let second = distinct(first.iter().enumerate().filter_map(again).collect(), &self.field);
         let near = Neighbours::of(second.iter().map(|f| f.round), &self.field);
-        second.iter().enumerate().map(|(i, f)| self.spot(i, f, &near)).collect()
+        let usual = usual_misfit(&second);
+        second.iter().enumerate().map(|(i, f)| self.spot(i, f, &near, usual)).collect()
     }
 
     /// A first fit of each candidate, the strongest first. The rim of a large spot has corners that are candidates too: those that lie in a
@@ -125,11 +148,12 @@ impl Finder<'_> {
             let others =
                 near.numbers(i, reach).filter(|&k| !is_taken[k] && places[k].contrast > 0.5 * c.contrast);
             let others: Vec<Round> = others.map(|k| near.rounds[k]).collect();
-            let window = self.field.window(&own, reach, &others);
+            let window = self.field.window(&own, reach, &others, 1 + (own.radius / FINE) as usize);
             let found =
-                fit(&window.pixels, &self.start(c), 12).map(|fit| self.found(&own, &window, &fit, None));
+                fit(&window.pixels, &self.start(c), 12, 0.01).map(|fit| self.found(&own, &window, &fit, None));
             if let Some(found) = found.filter(|f| self.is_spot(f)) {
                 near.rounds[i] = found.round;
+                near.largest = near.largest.max(found.round.radius);
                 let within = near.numbers(i, found.round.radius + 1.0);
                 let within: Vec<usize> = within
                     .filter(|&k| k > i && near.rounds[k].distance(&found.round) < found.round.radius + 1.0)
@@ -153,7 +177,7 @@ impl Finder<'_> {
 
     /// Pixels of the light around a spot.
     fn outside(&self, f: &Found, others: &[Round]) -> Window {
-        let mut window = self.field.window(&f.round, ground_reach(f), others);
+        let mut window = self.field.window(&f.round, ground_reach(f), others, 1);
         let edge = 1.0 + 3.0 * f.blur / f.round.radius;
         let keep: Vec<bool> =
             window.pixels.iter().map(|px| px.x.hypot(px.y) > edge * f.elongation.sqrt()).collect();
@@ -166,6 +190,9 @@ impl Finder<'_> {
 
     /// The light around a spot where it is not that of a plane but changes across one direction.
     fn ridges(&self, f: &Found, others: &[Round]) -> Option<Ridges> {
+        if f.residual < 0.7 * UNEVEN * f.contrast {
+            return None;
+        }
         let window = self.outside(f, others);
         let r = f.round.radius;
         let outside: Vec<Outside> = window.pixels.iter().map(|px| [px.x * r, px.y * r, px.value]).collect();
@@ -252,16 +279,21 @@ impl Finder<'_> {
         let settings = &self.params.settings;
         f.contrast >= settings.min_contrast
             && (settings.min_radius_px..=settings.max_radius_px).contains(&f.round.radius)
-            && f.explained > 0.8
+            && f.explained > 0.9
             && f.elongation < 2.0
             && f.residual < 0.12 * f.contrast
+            && f.blur < 0.75 * f.round.radius
+            && f.sigma < 0.1 * f.round.radius
             && self.field.depth(f.round.at) > 0.0
     }
 
-    fn spot(&self, number: usize, f: &Found, near: &Neighbours) -> Spot {
+    fn spot(&self, number: usize, f: &Found, near: &Neighbours, usual: f64) -> Spot {
         let edge = f.round.radius * f.elongation.sqrt();
         let meets = !near.about(number, edge + 1.0).is_empty();
-        let cut = meets || self.field.depth(f.round.at) < edge + f.blur.min(1.5) || f.elongation > 1.35;
+        let cut = meets
+            || self.field.depth(f.round.at) < edge + f.blur.min(1.5)
+            || f.elongation > LONGEST
+            || f.misfit() > (MISFIT * usual).max(LEAST_MISFIT);
         Spot {
             at_px: f.round.at,
             radius_px: f.round.radius,
@@ -335,11 +367,15 @@ impl Neighbours {
 }
 
 /// Those whose middles lie in none that explains its window better.
-fn distinct(mut found: Vec<Found>) -> Vec<Found> {
+fn distinct(mut found: Vec<Found>, field: &Field<'_>) -> Vec<Found> {
     found.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    let mut cells = Cells::new([field.grey.width, field.grey.height]);
+    let largest = found.iter().map(|f| f.round.radius).fold(0.0, f64::max);
     let mut kept: Vec<Found> = Vec::new();
     for f in found {
-        if kept.iter().all(|k| k.round.distance(&f.round) > 0.9 * k.round.radius.max(f.round.radius)) {
+        let within = |k: &Found| k.round.distance(&f.round) < 0.9 * k.round.radius.max(f.round.radius);
+        if !cells.near(f.round.at, largest).any(|k| within(&kept[k])) {
+            cells.add(f.round.at, kept.len());
             kept.push(f);
         }
     }

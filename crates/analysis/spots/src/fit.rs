@@ -2,12 +2,12 @@
 
 use nalgebra::SMatrix;
 
-use crate::profile::{COUNT, Parameters, light, light_and_derivative};
+use crate::profile::{COUNT, Parameters, light_and_derivative};
 
-/// Most steps of a fit.
-const STEPS: usize = 30;
-/// A step of the centre that ends a fit, radii.
-const SMALL: f64 = 2e-4;
+/// Steps after which a profile must explain some of what is seen.
+const HOPE: usize = 3;
+/// Share that a hopeless one leaves unexplained.
+const HOPELESS: f64 = 0.5;
 
 /// A pixel of a spot's window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,66 +41,109 @@ fn is_profile(p: &Parameters) -> bool {
         && p[0].hypot(p[1]) < 1.0
 }
 
-fn squares(pixels: &[Pixel], p: &Parameters) -> f64 {
-    pixels.iter().map(|px| (px.value - px.ground * light(p, px.x, px.y)).powi(2)).sum()
-}
-
-/// Fits from a start; none where there are too few pixels or it leads nowhere.
-pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, steps: usize) -> Option<Fit> {
+/// Fits from a start in at most `steps`; none where there are too few pixels, it leads nowhere, or after some steps most of what is seen is
+/// still not explained.
+pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, steps: usize, small: f64) -> Option<Fit> {
     if pixels.len() < 2 * COUNT {
         return None;
     }
+    let mean = pixels.iter().map(|px| px.value).sum::<f64>() / pixels.len() as f64;
+    let spread: f64 = pixels.iter().map(|px| (px.value - mean).powi(2)).sum();
     let mut p = *start;
     let mut damping = 1e-3;
-    let mut best = squares(pixels, &p);
-    for _ in 0..steps.min(STEPS) {
-        let (normal, right) = normal_equations(pixels, &p);
+    let mut here = Equations::at(pixels, &p);
+    for k in 0..steps {
         let mut moved = None;
         while moved.is_none() && damping < 1e6 {
-            let mut damped = normal;
+            let mut damped = here.normal;
             for i in 0..COUNT {
-                damped[(i, i)] += damping * normal[(i, i)] + 1e-9;
+                damped[(i, i)] += damping * here.normal[(i, i)] + 1e-9;
             }
-            let step = damped.cholesky()?.solve(&right);
+            let step = damped.cholesky()?.solve(&here.right);
             let next = p + step;
-            let after = if is_profile(&next) { squares(pixels, &next) } else { f64::INFINITY };
-            if after <= best {
-                moved = Some((next, step[0].hypot(step[1]), after));
+            let there = is_profile(&next).then(|| Equations::at(pixels, &next));
+            if let Some(there) = there.filter(|e| e.squares <= here.squares) {
+                moved = Some((next, step[0].hypot(step[1]), there));
                 damping = (damping * 0.1).max(1e-7);
             } else {
                 damping *= 10.0;
             }
         }
-        let Some((next, shift, after)) = moved else { break };
-        let gain = best - after;
-        (p, best) = (next, after);
-        if shift < SMALL && gain <= 1e-3 * best {
+        let Some((next, shift, there)) = moved else { break };
+        let gain = here.squares - there.squares;
+        (p, here) = (next, there);
+        if shift < small && gain <= 5.0 * small * here.squares {
             break;
         }
-    }
-    let (normal, _) = normal_equations(pixels, &p);
-    let mut regular = normal;
-    for i in 0..COUNT {
-        regular[(i, i)] += 1e-7 * normal[(i, i)] + 1e-9;
-    }
-    let inverse = regular.cholesky()?.inverse();
-    Some(Fit { parameters: p, squares: best, inverse })
-}
-
-/// `J' J` and `J' residual`.
-fn normal_equations(pixels: &[Pixel], p: &Parameters) -> (SMatrix<f64, COUNT, COUNT>, Parameters) {
-    let mut lower = [[0.0_f64; COUNT]; COUNT];
-    let mut right = [0.0_f64; COUNT];
-    for px in pixels {
-        let (value, mut row) = light_and_derivative(p, px.x, px.y);
-        row.iter_mut().for_each(|d| *d *= px.ground);
-        let residual = px.value - px.ground * value;
-        for i in 0..COUNT {
-            right[i] += row[i] * residual;
-            for j in 0..=i {
-                lower[i][j] += row[i] * row[j];
-            }
+        if k >= HOPE && here.squares > HOPELESS * spread {
+            return None;
         }
     }
-    (SMatrix::from_fn(|i, j| if j <= i { lower[i][j] } else { lower[j][i] }), right.into())
+    let mut regular = here.normal;
+    for i in 0..COUNT {
+        regular[(i, i)] += 1e-7 * here.normal[(i, i)] + 1e-9;
+    }
+    let inverse = regular.cholesky()?.inverse();
+    Some(Fit { parameters: p, squares: here.squares, inverse })
+}
+
+/// What a step is made of.
+struct Equations {
+    /// `J' J`.
+    normal: SMatrix<f64, COUNT, COUNT>,
+    /// `J' residual`.
+    right: Parameters,
+    /// Sum of squared residuals.
+    squares: f64,
+}
+
+impl Equations {
+    fn at(pixels: &[Pixel], p: &Parameters) -> Self {
+        let mut lower = [[0.0_f64; COUNT]; COUNT];
+        let mut right = [0.0_f64; COUNT];
+        let mut squares = 0.0;
+        for px in pixels {
+            let (value, mut row) = light_and_derivative(p, px.x, px.y);
+            row.iter_mut().for_each(|d| *d *= px.ground);
+            let residual = px.value - px.ground * value;
+            squares += residual * residual;
+            for i in 0..COUNT {
+                right[i] += row[i] * residual;
+                for j in 0..=i {
+                    lower[i][j] += row[i] * row[j];
+                }
+            }
+        }
+        let normal = SMatrix::from_fn(|i, j| if j <= i { lower[i][j] } else { lower[j][i] });
+        Self { normal, right: right.into(), squares }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::light;
+
+    #[test]
+    fn a_profile_is_found_again_from_a_start_a_quarter_off() {
+        let truth = Parameters::from([0.13, -0.21, 1.2, 0.05, 1.1, 3.0, 1.5, -0.2, 60.0, 2.0, -1.0]);
+        let places =
+            (-10..=10).flat_map(|y| (-10..=10).map(move |x| (f64::from(x) / 5.0, f64::from(y) / 5.0)));
+        let pixels: Vec<Pixel> =
+            places.map(|(x, y)| Pixel { x, y, value: light(&truth, x, y), ground: 1.0 }).collect();
+        let start = Parameters::from([0.0, 0.0, 0.9, 0.0, 0.9, 2.5, 1.2, 0.0, 60.0, 0.0, 0.0]);
+        let found = fit(&pixels, &start, 30, 1e-6).unwrap();
+        assert!((found.parameters - truth).norm() < 1e-3, "{}", found.parameters);
+        assert!(fit(&pixels[..20], &start, 30, 1e-6).is_none());
+    }
+
+    #[test]
+    fn stripes_are_given_up() {
+        let places =
+            (-10..=10).flat_map(|y| (-10..=10).map(move |x| (f64::from(x) / 5.0, f64::from(y) / 5.0)));
+        let pixels: Vec<Pixel> =
+            places.map(|(x, y)| Pixel { x, y, value: 50.0 + 20.0 * (9.0 * x).sin(), ground: 1.0 }).collect();
+        let start = Parameters::from([0.0, 0.0, 1.0, 0.0, 1.0, 2.5, 0.2, 0.0, 50.0, 0.0, 0.0]);
+        assert!(fit(&pixels, &start, 30, 1e-3).is_none());
+    }
 }

@@ -24,6 +24,7 @@ fn step(t: f64) -> (f64, f64) {
 }
 
 /// The light at a place.
+#[cfg(test)]
 pub(crate) fn light(p: &Parameters, x: f64, y: f64) -> f64 {
     let (dx, dy) = (x - p[0], y - p[1]);
     let (u, v) = (p[2] * dx + p[3] * dy, p[3] * dx + p[4] * dy);

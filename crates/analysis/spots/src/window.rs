@@ -57,8 +57,9 @@ impl Field<'_> {
         })
     }
 
-    /// The pixels within `reach` px of a round thing's middle, without those of `others`. Places are in its radii.
-    pub fn window(&self, own: &Round, reach: f64, others: &[Round]) -> Window {
+    /// The pixels within `reach` px of a round thing's middle, without those of `others`: each `every`th along both axes. Places are in
+    /// its radii.
+    pub fn window(&self, own: &Round, reach: f64, others: &[Round], every: usize) -> Window {
         let [cx, cy] = own.at;
         let range = |c: f64, n: usize| {
             (c - reach).ceil().max(0.0) as usize..((c + reach).floor() + 1.0).clamp(0.0, n as f64) as usize
@@ -67,10 +68,10 @@ impl Field<'_> {
         let rim = self.border.map(|c| (c.centre_px, (c.radius_px - BORDER_EDGE).max(0.0)));
         let mut pixels = Vec::with_capacity(columns.len() * rows.len());
         let mut places = Vec::with_capacity(columns.len() * rows.len());
-        for j in rows.clone() {
+        for j in rows.clone().step_by(every) {
             let y = j as f64;
             let row = &self.grey.samples[j * self.grey.width..];
-            for i in columns.clone() {
+            for i in columns.clone().step_by(every) {
                 let x = i as f64;
                 if (x - cx).powi(2) + (y - cy).powi(2) > reach * reach
                     || rim.is_some_and(|(c, r)| (x - c[0]).powi(2) + (y - c[1]).powi(2) > r * r)
