@@ -10,7 +10,10 @@ use biplane_phantom::{
 };
 use biplane_spots::{Look, SpotParams, SpotSettings, find_spots};
 
-fn pictures() -> Result<[(&'static str, Frame, Look); 2], Box<dyn std::error::Error>> {
+/// Its name, the picture, and what is looked for in it.
+type Case = (&'static str, Frame, Look);
+
+fn pictures() -> Result<[Case; 2], Box<dyn std::error::Error>> {
     let views = biplane(90.0);
     let view = &views[0];
     let distortion = IntensifierDistortion {
@@ -19,7 +22,8 @@ fn pictures() -> Result<[(&'static str, Frame, Look); 2], Box<dyn std::error::Er
         ..IntensifierDistortion::none(view.size)
     };
     let exposure = Exposure { distortion: Some(distortion), brightness: 0.8, ..Exposure::fluoroscopy() };
-    let plate = PosedBody::at_rest(PlatePlacement::on_detector().pose(view), Plate::concentric().absorbers()?);
+    let plate =
+        PosedBody::at_rest(PlatePlacement::on_detector().pose(view), Plate::concentric().absorbers()?);
     let plate = Scene { bodies: vec![plate], ..Scene::default() };
     let beads = BeadFrame::drawn(&BeadLayout::large(), &views, 1)?.scene();
     Ok([

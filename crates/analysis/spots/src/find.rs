@@ -26,6 +26,10 @@ const LONGEST: f64 = 1.35;
 const MISFIT: f64 = 2.5;
 /// Residual that any spot may have, in its contrast.
 const LEAST_MISFIT: f64 = 0.02;
+/// Fewer spots than any plate or frame has.
+const FEW: usize = 4;
+/// Grey level at the top of the scale.
+const WHITE: f64 = 254.0;
 /// Least share of the noise that is left in residuals.
 const LEAST_LEFT: f64 = 0.2;
 
@@ -55,7 +59,8 @@ pub fn find_spots(frame: &Frame, params: &SpotParams) -> Result<Spots, SpotError
     let finder = Finder { field: Field { grey: &grey, border }, params, noise: grey.noise() };
     let mut spots = finder.spots(&even);
     spots.sort_by(|a, b| a.at_px[1].total_cmp(&b.at_px[1]).then(a.at_px[0].total_cmp(&b.at_px[0])));
-    Ok(Spots { spots, border, ..empty })
+    let warnings = finder.warnings(&spots, &even);
+    Ok(Spots { spots, border, warnings, ..empty })
 }
 
 /// What a window has shown.
@@ -149,8 +154,8 @@ impl Finder<'_> {
                 near.numbers(i, reach).filter(|&k| !is_taken[k] && places[k].contrast > 0.5 * c.contrast);
             let others: Vec<Round> = others.map(|k| near.rounds[k]).collect();
             let window = self.field.window(&own, reach, &others, 1 + (own.radius / FINE) as usize);
-            let found =
-                fit(&window.pixels, &self.start(c), 12, 0.01).map(|fit| self.found(&own, &window, &fit, None));
+            let found = fit(&window.pixels, &self.start(c), 12, 0.01)
+                .map(|fit| self.found(&own, &window, &fit, None));
             if let Some(found) = found.filter(|f| self.is_spot(f)) {
                 near.rounds[i] = found.round;
                 near.largest = near.largest.max(found.round.radius);
@@ -163,6 +168,62 @@ impl Finder<'_> {
             }
         }
         all
+    }
+
+    /// What is worth a look, for people.
+    fn warnings(&self, spots: &[Spot], even: &Grey) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let (name, other, other_name) = match self.params.look {
+            Look::Bright => ("bright", Look::Dark, "dark"),
+            Look::Dark => ("dark", Look::Bright, "bright"),
+        };
+        if spots.len() < FEW {
+            let settings = &self.params.settings;
+            let mut text = format!(
+                "{} {name} spots of {} to {} px radius and {} grey levels contrast",
+                spots.len(),
+                settings.min_radius_px,
+                settings.max_radius_px,
+                settings.min_contrast
+            );
+            let params = SpotParams { look: other, settings: settings.clone() };
+            let others = Finder { params: &params, ..*self }.spots(even).len();
+            if others >= FEW {
+                text += &format!(", but {others} {other_name} ones: is it the right picture?");
+            } else {
+                text += ": is it the right picture, or do [spots] min_radius_px, max_radius_px, min_contrast rule them out?";
+            }
+            warnings.push(text);
+        }
+        let saturated = spots.iter().filter(|s| self.is_saturated(s)).count();
+        if saturated > 0 {
+            warnings.push(format!(
+                "the light of {saturated} of {} spots is at the top of the scale, which can move their centres by some tenths of \
+                 a pixel where the light is uneven; take the picture with less radiation",
+                spots.len()
+            ));
+        }
+        let cut = spots.iter().filter(|s| s.cut).count();
+        if 2 * cut > spots.len() {
+            warnings.push(format!(
+                "{cut} of {} spots are cut by the border or run into another: is it the right picture?",
+                spots.len()
+            ));
+        }
+        warnings
+    }
+
+    /// Whether the brighter side of a spot's edge is white.
+    fn is_saturated(&self, spot: &Spot) -> bool {
+        let ring = match self.params.look {
+            Look::Bright => 0.5 * spot.radius_px,
+            Look::Dark => spot.radius_px * spot.elongation.sqrt() + 4.0,
+        };
+        let white = (0..8).filter(|k| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(*k) / 8.0).sin_cos();
+            self.field.grey.at(spot.at_px[0] + ring * cos, spot.at_px[1] + ring * sin) > WHITE
+        });
+        white.count() >= 4
     }
 
     fn start(&self, c: &Candidate) -> Parameters {
