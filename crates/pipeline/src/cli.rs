@@ -14,6 +14,7 @@ use biplane_stage::{Clean, Context, Size, Store};
 use clap::{ArgAction, Parser, Subcommand};
 
 use crate::diagnostics::slashes;
+use crate::doctor::{DoctorError, doctor};
 use crate::logging::{self, LogFormat};
 use crate::look::{Fate, LookError, counts, look};
 use crate::outcome::Outcome;
@@ -123,6 +124,20 @@ To correct a pose, write a row into edits/poses.csv beside the pipeline file and
         #[arg(long)]
         all: bool,
     },
+    /// Say whether the calibration still fits the frames: with the matches of the last run, do the views agree, has the
+    /// picture moved on the detector, how sure can a pose be?
+    #[command(after_help = "Examples:
+  biplane doctor                    every trial of the study
+  biplane doctor --trial lunge
+
+The limits are in [doctor] of the pipeline file. Exit code 1 where one is not kept.")]
+    Doctor {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// This trial alone.
+        #[arg(long)]
+        trial: Option<String>,
+    },
     /// Show the results of the last run and the size of the store.
     #[command(
         after_help = "The fit is the root mean square distance of the outline from its edges, over all views.
@@ -229,6 +244,18 @@ fn obey(command: Command) -> Ended {
                 _ => print(&(shown.join("\n") + "\n")),
             }
             Ok(End::Good)
+        }
+        Command::Doctor { pipeline, trial } => {
+            let found = doctor(load(&pipeline.file)?, trial.as_deref()).map_err(|error| {
+                let end = match &error {
+                    DoctorError::Store(_) => End::Internal,
+                    DoctorError::Trial { .. } => End::BadConfiguration,
+                    _ => End::BadInput,
+                };
+                (end, error.to_string())
+            })?;
+            print(&found.text);
+            Ok(if found.well { End::Good } else { End::SomeFailed })
         }
         Command::Status { pipeline } => status(&load(&pipeline.file)?),
         Command::Clean { pipeline, dry_run, all } => {

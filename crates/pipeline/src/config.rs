@@ -51,6 +51,9 @@ pub struct PipelineFile {
     /// How poses are found from the edges.
     #[serde(default, rename = "match")]
     pub matching: MatchParams,
+    /// Limits of `biplane doctor`.
+    #[serde(default)]
+    pub doctor: DoctorSection,
     /// Where results go.
     #[serde(default)]
     pub output: OutputSection,
@@ -259,6 +262,27 @@ pub enum PairBy {
     Number,
     /// By the place in the sorted list.
     Index,
+}
+
+/// `[doctor]`: when a calibration is said not to fit the frames of a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DoctorSection {
+    /// Median disagreement of two views about where a body is, across their epipolar planes, mm.
+    #[schemars(range(min = 0.0))]
+    pub max_disagreement_mm: f64,
+    /// How far the intensifier's round border may have moved since the plate's picture, px.
+    #[schemars(range(min = 0.0))]
+    pub max_border_shift_px: f64,
+    /// Standard deviation of a body's position that the calibration alone may bring, mm.
+    #[schemars(range(min = 0.0))]
+    pub max_pose_sigma_mm: f64,
+}
+
+impl Default for DoctorSection {
+    fn default() -> Self {
+        Self { max_disagreement_mm: 0.1, max_border_shift_px: 1.0, max_pose_sigma_mm: 0.2 }
+    }
 }
 
 /// `[output]`

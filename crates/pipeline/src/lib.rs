@@ -7,7 +7,9 @@
 pub mod calibrate;
 pub mod cli;
 pub mod config;
+pub mod convert;
 pub mod diagnostics;
+pub mod doctor;
 pub mod drawings;
 pub mod init;
 pub mod logging;

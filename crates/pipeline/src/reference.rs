@@ -8,8 +8,8 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 12] = [
-    "study", "fluoroscope", "plate", "beads", "body", "trial", "spots", "distortion", "environment", "segment", "match", "output",
+const ORDER: [&str; 13] = [
+    "study", "fluoroscope", "plate", "beads", "body", "trial", "spots", "distortion", "environment", "segment", "match", "doctor", "output",
 ];
 
 /// The JSON Schema, indented, with a newline at its end.

@@ -337,6 +337,7 @@ mod tests {
             spots: Default::default(),
             distortion: Default::default(),
             environment: Default::default(),
+            doctor: Default::default(),
             segment: Default::default(),
             matching: Default::default(),
             output: "/study/results".into(),

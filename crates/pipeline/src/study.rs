@@ -14,7 +14,7 @@ use biplane_segmentation::{SegmentError, SegmentParams};
 use biplane_spots::{Look, SpotSettings};
 
 use crate::config::{
-    BeadsSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy, PipelineFile,
+    BeadsSection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy, PipelineFile,
     PlateSection, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
@@ -46,6 +46,8 @@ pub struct Study {
     pub segment: SegmentParams,
     /// How poses are found.
     pub matching: MatchParams,
+    /// Limits of `doctor`.
+    pub doctor: DoctorSection,
     /// Folder of results.
     pub output: PathBuf,
 }
@@ -258,6 +260,7 @@ impl Check {
             trial,
             segment,
             matching,
+            doctor,
             output,
         } = file;
         let name = study.name;
@@ -307,6 +310,7 @@ impl Check {
             environment,
             segment,
             matching,
+            doctor,
             output: folder,
         }
     }

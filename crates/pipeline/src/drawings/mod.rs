@@ -16,6 +16,8 @@ mod residual;
 mod sheet;
 mod space;
 mod svg;
+#[cfg(test)]
+mod tests;
 
 use biplane_artifact::{BeadList, Drawing, Environment, Frame, PlateFit};
 use biplane_stage::{Context, Stage, inputs};
