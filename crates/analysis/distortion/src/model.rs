@@ -295,3 +295,196 @@ fn local_candidate(from: &[Point2], to: &[Point2], neighbours: usize) -> Result<
 fn residuals(fit: &Fit, from: &[Point2], to: &[Point2]) -> impl Iterator<Item = Vector2> {
     from.iter().zip(to).map(|(p, q)| fit.at(p).0 - q)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use biplane_phantom::{IntensifierDistortion, Plate, PlatePlacement, SpotPattern, SpotRadii, biplane};
+    use rand::{Rng, SeedableRng};
+    use rand_distr::StandardNormal;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    /// Distortion at its worst by the project's goal: 12 px of pincushion and of S at the rim.
+    fn bent() -> IntensifierDistortion {
+        IntensifierDistortion {
+            pincushion_px: 12.0,
+            s_shape_px: 12.0,
+            shift_px: Vector2::new(2.0, -1.0),
+            ..IntensifierDistortion::none([1024, 1024])
+        }
+    }
+
+    /// Recorded centres with noise and ideal places of the spots of a plate that lie within the intensifier's border.
+    fn pairs(
+        plate: &Plate,
+        distortion: &IntensifierDistortion,
+        noise_px: f64,
+        seed: u64,
+    ) -> [Vec<Point2>; 2] {
+        let view = &biplane(90.0)[0];
+        let pose = PlatePlacement { turn_rad: 0.3, shift_mm: [4.0, -3.0], ..PlatePlacement::on_detector() }
+            .pose(view);
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut noise = || noise_px * random.sample::<f64, _>(StandardNormal);
+        plate
+            .seen(&pose, view, distortion)
+            .into_iter()
+            .filter(|s| (s.centroid - Point2::new(511.5, 511.5)).norm() < 498.0)
+            .map(|s| (s.centroid + Vector2::new(noise(), noise()), s.ideal))
+            .unzip::<_, _, Vec<_>, Vec<_>>()
+            .into()
+    }
+
+    /// Root mean square and largest error of the map inside 95 % of the radius.
+    fn true_error(fitted: &Fitted, distortion: &IntensifierDistortion) -> [f64; 2] {
+        let grid = (0..103)
+            .flat_map(|j| (0..103).map(move |i| Point2::new(f64::from(i) * 10.0, f64::from(j) * 10.0)));
+        let inside = grid.filter(|p| (p - Point2::new(511.5, 511.5)).norm() < 0.95 * 512.0);
+        let errors: Vec<Vector2> = inside.map(|p| fitted.ideal(&p) - distortion.ideal(&p)).collect();
+        [held_out::rms(errors.iter().copied()), held_out::quantile(&errors, 1.0)]
+    }
+
+    fn plates() -> [Plate; 3] {
+        let radii = SpotRadii { centre: 2.2, orientation: 1.9, others: 1.25 };
+        let square = SpotPattern::Square { pitch_mm: 10.0, reach_mm: 165.0 };
+        let hexagonal = SpotPattern::Hexagonal { pitch_mm: 8.0, reach_mm: 165.0 };
+        [Plate::concentric(), Plate::perforated(square.spots(radii)), Plate::dotted(hexagonal.spots(radii))]
+    }
+
+    #[test]
+    fn the_default_reaches_the_goal_and_the_degree_of_the_thesis_does_worse() {
+        for (plate, seed) in plates().iter().zip(1..) {
+            let [from, to] = pairs(plate, &bent(), 0.03, seed);
+            let fitted = fit(&from, &to, &DistortionParams::default()).unwrap();
+            // The project's goal is 0.05 px inside 95 % of the radius.
+            let [rms, worst] = true_error(&fitted, &bent());
+            assert!(rms < 0.012 && worst < 0.05, "{rms} px, {worst} px at most");
+            // A degree less leaves out what the inverse of the cubic map has of the fifth power.
+            let less = DistortionParams { degree: 4, ..DistortionParams::default() };
+            let less = fit(&from, &to, &less).unwrap();
+            assert!(true_error(&less, &bent())[0] > 2.0 * rms);
+            assert!(less.score().unwrap().held_out_rms_px > 1.1 * fitted.score().unwrap().held_out_rms_px);
+            assert_eq!(fitted.scores.len(), 8);
+            assert!(fitted.used.iter().all(|u| *u));
+        }
+    }
+
+    #[test]
+    fn what_the_leverage_says_of_a_spot_held_out_is_what_a_fit_without_it_says() {
+        let [from, to] = pairs(&plates()[1], &bent(), 0.1, 3);
+        let params = DistortionParams { degree: 6, ..DistortionParams::default() };
+        let fitted = fit(&from, &to, &params).unwrap();
+        for of in [0, 5, 333, from.len() - 1] {
+            let mut weights = vec![1.0; from.len()];
+            weights[of] = 0.0;
+            let without = Polynomial::fit(&from, &to, &weights, 6).unwrap().polynomial;
+            assert!((without.at(&from[of]).0 - to[of] - fitted.held_out_px[of]).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn spots_of_wrong_holes_are_left_out_and_do_no_harm() {
+        let clean = pairs(&plates()[1], &bent(), 0.03, 9);
+        let [mut from, to] = clean.clone();
+        // One in twelve is off by a hole (32 px) or by what a scratch does to it, on one side of the picture.
+        let wrong = |i: usize| i % 6 == 0 && to[i].x > 500.0;
+        for i in (0..from.len()).filter(|i| wrong(*i)) {
+            from[i] += if i % 12 == 0 { Vector2::new(32.0, 3.0) } else { Vector2::new(-0.4, 0.5) };
+        }
+        for model in [Model::Polynomial, Model::LocalWeightedMean, Model::Best] {
+            let params = DistortionParams { model, ..DistortionParams::default() };
+            let fitted = fit(&from, &to, &params).unwrap();
+            for (i, used) in fitted.used.iter().enumerate() {
+                assert_eq!(*used, !wrong(i), "{i}: {}", fitted.held_out_px[i].norm());
+                assert_eq!(fitted.held_out_px[i].norm() < 0.3, *used);
+            }
+            assert!(true_error(&fitted, &bent())[0] < 0.03);
+        }
+        // Where every third is wrong nothing is said.
+        let [mut from, to] = clean;
+        from.iter_mut().step_by(3).for_each(|p| p.x += 32.0);
+        let error = fit(&from, &to, &DistortionParams::default()).unwrap_err();
+        assert!(matches!(error, FitError::TooManyRejected { .. }), "{error}");
+    }
+
+    #[test]
+    fn the_best_model_is_that_of_the_least_held_out_residual() {
+        let best = DistortionParams { model: Model::Best, ..DistortionParams::default() };
+        let [from, to] = pairs(&plates()[2], &bent(), 0.02, 4);
+        let fitted = fit(&from, &to, &best).unwrap();
+        assert_eq!(fitted.model, "polynomial, degree 5");
+        // A dent of 60 px that no polynomial follows, though other spots agree with those in it.
+        let dent = |p: &Point2| {
+            Vector2::new(1.0, -0.5) * (-(p - Point2::new(400.0, 600.0)).norm_squared() / 7200.0).exp()
+        };
+        let to: Vec<Point2> = from.iter().zip(&to).map(|(p, q)| q + dent(p)).collect();
+        let fitted = fit(&from, &to, &DistortionParams { reject_sigmas: 50.0, ..best }).unwrap();
+        assert_eq!(fitted.model, "local weighted mean");
+        let least = fitted.scores.iter().map(|s| s.held_out_rms_px).fold(f64::INFINITY, f64::min);
+        assert_eq!(fitted.score().unwrap().held_out_rms_px, least);
+    }
+
+    #[test]
+    fn a_table_follows_its_map_and_leads_back() {
+        let [from, to] = pairs(&plates()[0], &bent(), 0.03, 6);
+        for model in [Model::Polynomial, Model::LocalWeightedMean] {
+            let fitted = fit(&from, &to, &DistortionParams { model, ..DistortionParams::default() }).unwrap();
+            let sampled = fitted.table([1024, 1024]);
+            assert!(sampled.error_px < 1e-3 && sampled.round_trip_px < 1.1e-3, "{sampled:?}");
+            let read = biplane_fluoroscope::Distortion::from(&sampled.table);
+            for p in from.iter().map(|p| p + Vector2::new(3.3, -7.1)) {
+                assert!((read.ideal(&p) - fitted.ideal(&p)).norm() < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_the_spots_no_map_runs_away() {
+        let [from, to] = pairs(&plates()[0], &bent(), 0.1, 6);
+        let models = [(Model::Polynomial, 5), (Model::Polynomial, 7), (Model::LocalWeightedMean, 5)];
+        for (model, degree) in models {
+            let params = DistortionParams { model, degree, ..DistortionParams::default() };
+            let fitted = fit(&from, &to, &params).unwrap();
+            for corner in [Point2::new(0.0, 0.0), Point2::new(1023.0, 0.0), Point2::new(-50.0, 1073.0)] {
+                // What a plane leaves of 17 px (12 each way) times the third power of the distance.
+                let r = (corner - Point2::new(511.5, 511.5)).norm() / 512.0;
+                let error = (fitted.ideal(&corner) - bent().ideal(&corner)).norm();
+                assert!(
+                    error < 17.0 * (r.powi(3) - 3.0 * r + 2.0),
+                    "{model:?} {degree}: {error} px at {corner}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_is_an_error_with_its_numbers() {
+        let [from, to] = pairs(&plates()[0], &bent(), 0.03, 6);
+        let of = |count: usize, degree: u32| {
+            let params = DistortionParams { degree, ..DistortionParams::default() };
+            fit(&from[..count], &to[..count], &params).map(|f| f.scores.len())
+        };
+        let too_few = |found, degree: u32, needed| {
+            Err(FitError::TooFew { model: format!("polynomial, degree {degree}"), found, needed })
+        };
+        assert_eq!(of(29, 4), too_few(29, 4, 30));
+        assert_eq!(of(10, 4), too_few(10, 4, 15));
+        assert_eq!(of(0, 1), too_few(0, 1, 3));
+        let line: Vec<Point2> = (0..80).map(|k| Point2::new(f64::from(k), 2.0 * f64::from(k))).collect();
+        let circle: Vec<Point2> =
+            (0..80).map(|k| Point2::new(f64::from(k).cos(), f64::from(k).sin()) * 300.0).collect();
+        for spots in [line, circle, vec![Point2::origin(); 80]] {
+            let error = fit(&spots, &spots, &DistortionParams::default()).unwrap_err();
+            assert!(matches!(error, FitError::BadlyPlaced { found: 80, .. }), "{error}");
+        }
+        let with = |params: DistortionParams| fit(&from, &to, &params).map(|_| ()).unwrap_err().to_string();
+        let usual = DistortionParams::default;
+        assert!(with(DistortionParams { degree: 8, ..usual() }).starts_with("degree = 8 in [distortion]"));
+        assert!(with(DistortionParams { neighbours: 5, ..usual() }).contains("6 to 50"));
+        assert!(with(DistortionParams { reject_sigmas: f64::NAN, ..usual() }).contains("at least 2"));
+        assert!(matches!(fit(&from, &to[1..], &usual()), Err(FitError::Pairs { .. })));
+        let mut broken = to.clone();
+        broken[3].x = f64::NAN;
+        assert!(matches!(fit(&from, &broken, &usual()), Err(FitError::Pairs { .. })));
+    }
+}
