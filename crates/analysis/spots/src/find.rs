@@ -6,7 +6,7 @@ use biplane_artifact::{Circle, Frame, Spot, Spots};
 use crate::border::{border, mirrored_beyond};
 use crate::candidates::{Candidate, candidates};
 use crate::cells::Cells;
-use crate::fit::{Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::grey::Grey;
 use crate::ground::{Outside, Ridges, about_plane, unevenness};
 use crate::noise::Correlation;
@@ -117,7 +117,7 @@ impl Finder<'_> {
             let others = near.about(i, reach);
             let mut window = self.field.window(&own, reach, &others, 1);
             if let Some(ridges) = self.ridges(f, &near.about(i, ground_reach(f) * 1.5)) {
-                let floor = (f.parameters[8] - f.contrast).max(0.0);
+                let floor = self.floor(&own);
                 for px in &mut window.pixels {
                     px.ground = (ridges.light(px.x * own.radius, px.y * own.radius) - floor).max(1.0);
                     px.value -= floor;
@@ -127,7 +127,7 @@ impl Finder<'_> {
             if window.pixels.iter().any(|px| px.ground != 1.0) {
                 (start[8], start[9], start[10]) = (1.0, 0.0, 0.0);
             }
-            let fit = fit(&window.pixels, &start, 30, 2e-4)?;
+            let fit = fit(&window.pixels, &start, &Effort::FINE)?;
             let found = self.found(&own, &window, &fit, Some(&correlation));
             self.is_spot(&found).then_some(found)
         };
@@ -154,7 +154,7 @@ impl Finder<'_> {
                 near.numbers(i, reach).filter(|&k| !is_taken[k] && places[k].contrast > 0.5 * c.contrast);
             let others: Vec<Round> = others.map(|k| near.rounds[k]).collect();
             let window = self.field.window(&own, reach, &others, 1 + (own.radius / FINE) as usize);
-            let found = fit(&window.pixels, &self.start(c), 12, 0.01)
+            let found = fit(&window.pixels, &self.start(c), &Effort::ROUGH)
                 .map(|fit| self.found(&own, &window, &fit, None));
             if let Some(found) = found.filter(|f| self.is_spot(f)) {
                 near.rounds[i] = found.round;
@@ -168,6 +168,18 @@ impl Finder<'_> {
             }
         }
         all
+    }
+
+    /// The light that uneven light behind a spot has no part in: what comes through the middle of a bead is scatter and darkness.
+    fn floor(&self, own: &Round) -> f64 {
+        match self.params.look {
+            Look::Bright => 0.0,
+            Look::Dark => {
+                let (s, [x, y]) = (0.2 * own.radius, own.at);
+                let about = [[x - s, y], [x + s, y], [x, y - s], [x, y + s]];
+                about.iter().map(|p| self.field.grey.at(p[0], p[1])).sum::<f64>() / 4.0
+            }
+        }
     }
 
     /// What is worth a look, for people.

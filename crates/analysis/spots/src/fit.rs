@@ -6,6 +6,8 @@ use crate::profile::{COUNT, Parameters, light_and_derivative};
 
 /// Steps after which a profile must explain some of what is seen.
 const HOPE: usize = 3;
+/// Number of the dome in the parameters.
+const DOME: usize = 7;
 /// Share that a hopeless one leaves unexplained.
 const HOPELESS: f64 = 0.5;
 
@@ -41,9 +43,29 @@ fn is_profile(p: &Parameters) -> bool {
         && p[0].hypot(p[1]) < 1.0
 }
 
-/// Fits from a start in at most `steps`; none where there are too few pixels, it leads nowhere, or after some steps most of what is seen is
-/// still not explained.
-pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, steps: usize, small: f64) -> Option<Fit> {
+/// How hard a fit tries.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Most steps.
+    pub steps: usize,
+    /// A step of the centre that ends the fit, radii.
+    pub small: f64,
+    /// Weight of the dome's square, in squares of the light.
+    pub flatness: f64,
+}
+
+impl Effort {
+    /// A rough fit from far off, without a dome: a spot of some px with a deep dome looks nearly like a smaller or larger one without, so
+    /// a fit that may have one can end there.
+    pub const ROUGH: Self = Self { steps: 15, small: 0.01, flatness: 1.0 };
+    /// All that the picture says.
+    pub const FINE: Self = Self { steps: 30, small: 2e-4, flatness: 1e-6 };
+}
+
+/// Fits from a start; none where there are too few pixels, it leads nowhere, or after some steps most of what is seen is still not
+/// explained.
+pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, effort: &Effort) -> Option<Fit> {
+    let &Effort { steps, small, flatness } = effort;
     if pixels.len() < 2 * COUNT {
         return None;
     }
@@ -51,7 +73,8 @@ pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, steps: usize, small: f64
     let spread: f64 = pixels.iter().map(|px| (px.value - mean).powi(2)).sum();
     let mut p = *start;
     let mut damping = 1e-3;
-    let mut here = Equations::at(pixels, &p);
+    let flatness = flatness * pixels.iter().map(|px| px.value * px.value).sum::<f64>();
+    let mut here = Equations::at(pixels, &p, flatness);
     for k in 0..steps {
         let mut moved = None;
         while moved.is_none() && damping < 1e6 {
@@ -61,7 +84,7 @@ pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, steps: usize, small: f64
             }
             let step = damped.cholesky()?.solve(&here.right);
             let next = p + step;
-            let there = is_profile(&next).then(|| Equations::at(pixels, &next));
+            let there = is_profile(&next).then(|| Equations::at(pixels, &next, flatness));
             if let Some(there) = there.filter(|e| e.squares <= here.squares) {
                 moved = Some((next, step[0].hypot(step[1]), there));
                 damping = (damping * 0.1).max(1e-7);
@@ -87,21 +110,24 @@ pub(crate) fn fit(pixels: &[Pixel], start: &Parameters, steps: usize, small: f64
     Some(Fit { parameters: p, squares: here.squares, inverse })
 }
 
-/// What a step is made of.
+/// What a step is made of: all pixels, and a preference for no dome.
 struct Equations {
     /// `J' J`.
     normal: SMatrix<f64, COUNT, COUNT>,
     /// `J' residual`.
     right: Parameters,
-    /// Sum of squared residuals.
+    /// Sum of squared residuals, the preference's too.
     squares: f64,
 }
 
 impl Equations {
-    fn at(pixels: &[Pixel], p: &Parameters) -> Self {
+    /// With a weight on the square of the dome.
+    fn at(pixels: &[Pixel], p: &Parameters, flatness: f64) -> Self {
         let mut lower = [[0.0_f64; COUNT]; COUNT];
         let mut right = [0.0_f64; COUNT];
-        let mut squares = 0.0;
+        let mut squares = flatness * p[DOME] * p[DOME];
+        right[DOME] = -flatness * p[DOME];
+        lower[DOME][DOME] = flatness;
         for px in pixels {
             let (value, mut row) = light_and_derivative(p, px.x, px.y);
             row.iter_mut().for_each(|d| *d *= px.ground);
@@ -132,9 +158,10 @@ mod tests {
         let pixels: Vec<Pixel> =
             places.map(|(x, y)| Pixel { x, y, value: light(&truth, x, y), ground: 1.0 }).collect();
         let start = Parameters::from([0.0, 0.0, 0.9, 0.0, 0.9, 2.5, 1.2, 0.0, 60.0, 0.0, 0.0]);
-        let found = fit(&pixels, &start, 30, 1e-6).unwrap();
-        assert!((found.parameters - truth).norm() < 1e-3, "{}", found.parameters);
-        assert!(fit(&pixels[..20], &start, 30, 1e-6).is_none());
+        let found = fit(&pixels, &start, &Effort { small: 1e-6, ..Effort::FINE }).unwrap();
+        assert!((found.parameters - truth).norm() < 0.02, "{}", found.parameters);
+        assert!((0..2).all(|k| (found.parameters[k] - truth[k]).abs() < 1e-3), "{}", found.parameters);
+        assert!(fit(&pixels[..20], &start, &Effort { small: 1e-6, ..Effort::FINE }).is_none());
     }
 
     #[test]
@@ -144,6 +171,6 @@ mod tests {
         let pixels: Vec<Pixel> =
             places.map(|(x, y)| Pixel { x, y, value: 50.0 + 20.0 * (9.0 * x).sin(), ground: 1.0 }).collect();
         let start = Parameters::from([0.0, 0.0, 1.0, 0.0, 1.0, 2.5, 0.2, 0.0, 50.0, 0.0, 0.0]);
-        assert!(fit(&pixels, &start, 30, 1e-3).is_none());
+        assert!(fit(&pixels, &start, &Effort::ROUGH).is_none());
     }
 }

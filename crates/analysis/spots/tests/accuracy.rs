@@ -166,7 +166,7 @@ fn centres_do_not_depend_on_where_in_a_pixel_they_lie() {
             };
             let frame = Frame { width: 50, height: 50, samples: (0..2500).map(sample).collect(), bits: 16 };
             let spots = found(&frame, look).spots;
-            assert_eq!(spots.len(), 1, "{spots:?}");
+            assert_eq!(spots.len(), 1, "{radius} at {at:?}: {spots:?}");
             let error = (spots[0].at_px[0] - at[0]).hypot(spots[0].at_px[1] - at[1]);
             // Without any blur pixels are too coarse for an edge; a spot of 2.5 px has few of them.
             assert!(error < 0.02, "radius {radius} at {at:?}: {error}");
