@@ -1,7 +1,7 @@
 //! How the noise of neighbouring pixels goes together.
 //!
 //! An intensifier blurs its quantum noise with its picture, so the noise of neighbours is nearly the same and averages out less than
-//! independent noise would: by a factor of 2 to 4 in the standard deviation of a spot's centre. The correlation is measured on the even light
+//! independent noise would. The correlation is measured on the even light
 //! around spots. **Not guaranteed:** noise that goes together over more than [`REACH`] px.
 
 use crate::window::Window;

@@ -1,8 +1,8 @@
 //! What a spot looks like: an ellipse with a soft edge in light that falls off evenly, and the derivative by its parameters.
 //!
 //! At a pixel `x` the light is `(b0 + b . x) (1 + S (A + Q (1 - rho^2)))` with `rho = |M (x - c)|`, 1 on the ellipse, and
-//! `S = Phi(k (1 - rho))`, the normal distribution's. Light is multiplied, not added, since that is what a hole or a bead does to it: with
-//! light that falls off by 0.06 % a px (vignetting of 15 % at a rim of 500 px) a sum would move the centre of a spot of 10 px by 0.02 px.
+//! `S = Phi(k (1 - rho))`, the normal distribution's. Light is multiplied, not added, since that is what a hole or a bead
+//! does to it: where it falls off (vignetting) a sum would move the centre towards the brighter side.
 //! `Q` is the dome of a ball's shadow. Everything is even about `c` but the light, so what the profile does not describe
 //! of an even spot does not move its centre.
 
