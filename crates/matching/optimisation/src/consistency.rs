@@ -2,20 +2,26 @@
 //!
 //! **Between two views.** A point seen from two sources lies in one plane with them. Moving a body along the normal of that plane
 //! moves both its outlines, so both views measure where the body is along it, and the pose can only halve what they disagree about.
-//! Each view's edges are fitted by a shift of the outline (two components across the view, and the inset); the difference of the
-//! shifts along the normal is the **disagreement**: zero but for noise where the calibration fits, whatever the pose. It is the
-//! epipolar residual of outlines, in mm at the body. Errors of calibration within the plane move the pose instead, and cannot be seen
+//! One step of the fit in which the first view's outline may also move along the normal gives that **disagreement**: zero but for
+//! noise where the calibration fits, whatever the pose. It is the epipolar residual of outlines, in mm at the body. Errors of calibration within the plane move the pose instead, and cannot be seen
 //! in this way.
 //!
 //! **Of a pose.** With outlines `r(pose, c) = 0` and calibration parameters `c` of covariance `S`, the pose that a wrong `c` gives is
 //! off by `-(J' W J)^-1 J' W B dc`, `J` and `B` being the derivatives of the outlines along their normals by pose and by `c`.
 
-use biplane_geometry::{Point3, Pose, Vector3};
+use biplane_geometry::{Point3, Pose};
 use biplane_outline::{Outline, RimMesh, Sampling};
-use nalgebra::{DMatrix, Matrix2xX, Matrix3, Matrix6, RowDVector, Vector3 as Column3, Vector6};
+use nalgebra::{DMatrix, Matrix2xX, Matrix6, RowDVector, SMatrix, SVector, Vector6};
 
 use crate::View;
-use crate::refine::{Buffers, CORRELATION_PX, RefineParams, collect, robust_scale_squared, robust_weight};
+use crate::refine::{
+    Buffers, CORRELATION_PX, RefineParams, Row, collect, robust_scale_squared, robust_weight,
+};
+
+/// Unknowns of the step: six of the pose, an inset a view, and the first view's own motion.
+const UNKNOWN: usize = 9;
+/// Times the step is weighed anew.
+const REWEIGHED: usize = 12;
 
 /// How far two views disagree about where a body is, along the normal of the plane through it and both sources.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,39 +47,55 @@ pub fn disagreement(
     let mut buffers = Buffers::default();
     collect(mesh, views, pose, params.final_search_px, true, params, &mut buffers);
     let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px);
-    let mut places = Vec::new();
-    for ((rows, inset), ray) in buffers.by_view().zip([to_first, to_second]) {
-        let across = normal.cross(&ray).try_normalize(0.0)?;
-        let (mut matrix, mut spread, mut vector) = (Matrix3::zeros(), Matrix3::zeros(), Column3::zeros());
-        let (mut weights, mut squared) = (0.0, 0.0);
-        let column = |row: &crate::refine::Row| {
-            let gradient = Vector3::new(row.derivative[0], row.derivative[1], row.derivative[2]);
-            // The inset is fitted again, since shift and inset share what an incomplete outline says.
-            Column3::new(gradient.dot(&normal), gradient.dot(&across), 1.0)
-        };
-        for row in rows {
-            let weight = row.length * robust_weight(scale_squared, row.residual - inset);
-            let c = column(row);
-            matrix += c * c.transpose() * weight;
+    // The pose, an inset a view, and how far the first view's outline is moved along the normal: all at once, because turning the
+    // body takes up a part of what the views disagree about.
+    let rows = || {
+        buffers
+            .by_view()
+            .enumerate()
+            .flat_map(|(view, (rows, inset))| rows.iter().map(move |r| (view, inset, r)))
+    };
+    let column = |view: usize, row: &Row| {
+        let mut c = SVector::<f64, UNKNOWN>::zeros();
+        c.fixed_rows_mut::<6>(0).copy_from(&row.derivative);
+        c[6 + view] = 1.0;
+        if view == 0 {
+            c[UNKNOWN - 1] = row.derivative.fixed_rows::<3>(0).dot(&normal);
+        }
+        c
+    };
+    // The weights of the pose that was found are those of residuals with the disagreement in them: begin with them, and weigh anew.
+    let mut solution = SVector::<f64, UNKNOWN>::zeros();
+    let mut inverse = SMatrix::<f64, UNKNOWN, UNKNOWN>::zeros();
+    for step in 0..REWEIGHED {
+        let mut matrix = SMatrix::<f64, UNKNOWN, UNKNOWN>::zeros();
+        let mut vector = SVector::<f64, UNKNOWN>::zeros();
+        for (view, inset, row) in rows() {
+            let c = column(view, row);
+            let left = if step == 0 { row.residual - inset } else { row.residual - c.dot(&solution) };
+            let weight = row.length * robust_weight(scale_squared, left);
+            matrix.syger(weight, &c, &c, 1.0);
             vector += c * (weight * row.residual);
         }
-        let inverse = matrix.try_inverse()?;
-        let solution = inverse * vector;
-        for row in rows {
-            let robust = robust_weight(scale_squared, row.residual - inset);
-            let c = column(row);
-            squared += row.length * robust * (row.residual - c.dot(&solution)).powi(2);
-            weights += row.length * robust;
-            spread += c * c.transpose() * (row.length * robust * robust * CORRELATION_PX);
-        }
-        if weights <= 0.0 {
-            return None;
-        }
-        let covariance = inverse * spread * inverse * (squared / weights);
-        places.push((solution.x, covariance[(0, 0)]));
+        matrix.fill_upper_triangle_with_lower_triangle();
+        inverse = matrix.try_inverse()?;
+        solution = inverse * vector;
     }
-    let [(a, variance_a), (b, variance_b)] = places[..] else { return None };
-    let found = Disagreement { mm: a - b, sigma_mm: (variance_a + variance_b).sqrt() };
+    // What the disagreement owes to each residual.
+    let share = inverse.row(UNKNOWN - 1);
+    let (mut squared, mut weights, mut spread) = (0.0, 0.0, 0.0);
+    for (view, _, row) in rows() {
+        let c = column(view, row);
+        let left = row.residual - c.dot(&solution);
+        let robust = robust_weight(scale_squared, left);
+        squared += row.length * robust * left.powi(2);
+        weights += row.length * robust;
+        spread += row.length * CORRELATION_PX * (robust * (share * c)[0]).powi(2);
+    }
+    if weights <= 0.0 {
+        return None;
+    }
+    let found = Disagreement { mm: solution[UNKNOWN - 1], sigma_mm: (spread * squared / weights).sqrt() };
     (found.mm.is_finite() && found.sigma_mm.is_finite()).then_some(found)
 }
 
@@ -103,7 +125,9 @@ pub fn pose_covariance_of_calibration(
             if !view.fluoroscope.on_image(&point.pixel, 2.0) {
                 continue;
             }
-            let Some((_, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else { continue };
+            let Some((_, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else {
+                continue;
+            };
             let Some(by_calibration) = derivative(number, &point.world) else { continue };
             let gradient = by_point.transpose() * point.normal;
             let turn = (point.world - centre).cross(&gradient);
