@@ -13,18 +13,15 @@ const NEAR: f64 = 1.2;
 
 /// Whether a place lies in the picture, and in its round border if it has one, by at least `inside_px`.
 pub(crate) fn in_picture(place: &Point2, size: [usize; 2], border: Option<&Circle>, inside_px: f64) -> bool {
-    let in_frame =
-        (0..2).all(|a| place[a] >= inside_px && place[a] <= size[a] as f64 - 1.0 - inside_px);
-    let in_circle =
-        |c: &Circle| (place - Point2::from(c.centre_px)).norm() <= c.radius_px - inside_px;
+    let in_frame = (0..2).all(|a| place[a] >= inside_px && place[a] <= size[a] as f64 - 1.0 - inside_px);
+    let in_circle = |c: &Circle| (place - Point2::from(c.centre_px)).norm() <= c.radius_px - inside_px;
     in_frame && border.is_none_or(in_circle)
 }
 
 /// The share of the picture, within its round border, that lies near one of the spots (recorded px).
 pub(crate) fn covered_share(spots: &[Point2], size: [usize; 2], border: Option<&Circle>) -> f64 {
     let nearby = Nearby::new(spots.to_vec());
-    let mut to_next: Vec<f64> =
-        spots.iter().filter_map(|p| Some(nearby.closest(p, 2).get(1)?.1)).collect();
+    let mut to_next: Vec<f64> = spots.iter().filter_map(|p| Some(nearby.closest(p, 2).get(1)?.1)).collect();
     to_next.sort_by(f64::total_cmp);
     let Some(usual) = to_next.get(to_next.len() / 2) else { return 0.0 };
     let at = |k: usize, side: usize| (k as f64 + 0.5) / PLACES as f64 * (side as f64 - 1.0);
@@ -44,7 +41,9 @@ mod tests {
     #[test]
     fn half_a_picture_is_half_covered() {
         let grid = |columns: u32| -> Vec<Point2> {
-            (0..columns * 40).map(|k| Point2::new(f64::from(k % columns), f64::from(k / columns)) * 10.0).collect()
+            (0..columns * 40)
+                .map(|k| Point2::new(f64::from(k % columns), f64::from(k / columns)) * 10.0)
+                .collect()
         };
         assert_eq!(covered_share(&grid(40), [391, 391], None), 1.0);
         // 20 columns reach to 190 px, and 12 px on: 202 of 390.

@@ -61,11 +61,8 @@ pub(crate) fn tilt(ideal: &[Point2], recorded: &[Point2], size: [usize; 2], sour
         return None;
     }
     let weighted = Complex::new(cubic.re, 3.0 * cubic.im);
-    let off = if weighted.norm() > 1e-9 {
-        (square.conj() - modulus) / weighted
-    } else {
-        Complex::new(0.0, 0.0)
-    };
+    let off =
+        if weighted.norm() > 1e-9 { (square.conj() - modulus) / weighted } else { Complex::new(0.0, 0.0) };
     let perspective = (square.conj() + cubic.conj() * off) * -2.0;
     let stretch = (stretch - cubic * off * off).norm().min(0.99);
     let sine = perspective.norm() * source_px / rim;
@@ -88,8 +85,7 @@ mod tests {
         let [view, _] = biplane(90.0);
         let TrueFluoroscope { size, pixel_mm, .. } = view;
         let radii = SpotRadii { centre: 1.0, orientation: 1.0, others: 1.0 };
-        let plate =
-            Plate::dotted(SpotPattern::Square { pitch_mm: 12.0, reach_mm: 150.0 }.spots(radii));
+        let plate = Plate::dotted(SpotPattern::Square { pitch_mm: 12.0, reach_mm: 150.0 }.spots(radii));
         let tilt_rad = tilt_deg.map(f64::to_radians);
         let placement = PlatePlacement { turn_rad: 0.4, tilt_rad, ..PlatePlacement::on_detector() };
         let pose: Pose = placement.pose(&view);
@@ -97,7 +93,8 @@ mod tests {
         for spot in plate.seen(&pose, &view, distortion) {
             let on_plate = plate.spots[spot.number].centre;
             let (sin, cos) = 0.4_f64.sin_cos();
-            let turned = Vector2::new(cos * on_plate.x - sin * on_plate.y, sin * on_plate.x + cos * on_plate.y);
+            let turned =
+                Vector2::new(cos * on_plate.x - sin * on_plate.y, sin * on_plate.x + cos * on_plate.y);
             ideal.push(Point2::new(511.5, 511.5) + turned / pixel_mm);
             recorded.push(spot.recorded);
         }

@@ -24,6 +24,9 @@ const LARGE: f64 = 1.15;
 /// Differences of sizes are told apart to this much of the median radius, in sum.
 const SIZE_STEP: f64 = 0.2;
 
+/// Differences of relative radii up to this one are none.
+const NOISE: f64 = 0.1;
+
 /// Most times that names are exchanged and spread again.
 const ROUNDS: usize = 12;
 
@@ -45,7 +48,7 @@ struct Motion {
 #[derive(Debug)]
 pub(crate) struct Identified {
     pub(crate) names: Names,
-    /// Sites that lie at other spots if the plate is moved onto itself: how many ways are as good as the one chosen, itself counted.
+    /// In how many ways the pattern lies on the spots as well, the one chosen counted; 1 if a person's clicks decided.
     pub(crate) ways: usize,
     /// The clicks that are not met, by number.
     pub(crate) unmet: Vec<usize>,
@@ -96,15 +99,21 @@ fn best_motion(
         .collect();
     let sizes = Sizes::new(seen, layout, &named);
 
-    let off_middle = |(spot, _): &&(usize, Site)| (seen.at[*spot] - seen.middle).norm();
-    let (_, base) = named.iter().min_by(|a, b| off_middle(a).total_cmp(&off_middle(b)))?;
-    let beside_base = *layout.neighbours(base).first()?;
-    let length = (beside_base.at - base.at).norm();
+    // From which site to which others the plate may move: from that of a click to what the click says, else from one in the middle.
+    let clicked = clicks.iter().filter_map(|(spot, to)| Some((names.site[*spot]?, vec![*to])));
+    let mut bases: Vec<(Site, Vec<Site>)> = clicked.collect();
+    if bases.is_empty() {
+        let off_middle = |(spot, _): &&(usize, Site)| (seen.at[*spot] - seen.middle).norm();
+        let (_, base) = named.iter().min_by(|a, b| off_middle(a).total_cmp(&off_middle(b)))?;
+        bases.push((*base, layout.representatives()));
+    }
 
     let mut motions: Vec<Motion> = Vec::new();
     let mut most = 0;
-    for site in layout.representatives() {
-        for neighbour in layout.neighbours(&site) {
+    for (base, site) in bases.iter().flat_map(|(base, to)| to.iter().map(move |site| (base, site))) {
+        let Some(beside_base) = layout.neighbours(base).into_iter().next() else { continue };
+        let length = (beside_base.at - base.at).norm();
+        for neighbour in layout.neighbours(site) {
             if ((neighbour.at - site.at).norm() - length).abs() > SAME * length {
                 continue;
             }
@@ -157,7 +166,7 @@ fn best_motion(
             .then(a.turned_deg.cmp(&b.turned_deg))
             .then(a.off_middle.total_cmp(&b.off_middle))
     })?;
-    let ways = motions.iter().filter(|m| told(m) == told(best)).count();
+    let ways = if clicks.is_empty() { motions.iter().filter(|m| told(m) == told(best)).count() } else { 1 };
     Some((best.move_plate, ways))
 }
 
@@ -189,10 +198,12 @@ impl Sizes {
         }
         let mut sum = 0.0;
         for (at, spot) in &self.spots {
-            let Some(site) = moved(layout, motion, at) else { continue };
-            let mark = self.marks.iter().find(|(number, _)| *number == site.number).map(|(_, r)| *r);
+            // A large spot that is moved off all holes is as wrong as one on a small hole.
+            let site = moved(layout, motion, at);
+            let mark = self.marks.iter().find(|(n, _)| site.is_some_and(|s| s.number == *n)).map(|(_, r)| *r);
             if mark.is_some() || *spot > LARGE {
-                sum += (spot - mark.unwrap_or(1.0)).abs();
+                // Noise of a radius is no difference.
+                sum += ((spot - mark.unwrap_or(1.0)).abs() - NOISE).max(0.0);
             }
         }
         (sum / SIZE_STEP).round() as i64
