@@ -257,6 +257,62 @@ fn flatness(places: &[[f64; 3]]) -> f64 {
     (squares.min().max(0.0) / squares.max().max(f64::MIN_POSITIVE)).sqrt()
 }
 
+/// A list of beads as XMALab takes it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct XmaLabCube {
+    /// The cube file.
+    pub cube: String,
+    /// The file of reference beads; empty where the list has no marks.
+    pub references: String,
+    /// What these files cannot hold, for people.
+    pub lost: Vec<String>,
+}
+
+/// Letters of a reference bead's name that XMALab reads.
+const XMALAB_NAME: usize = 20;
+
+/// The list as XMALab's two files, in mm; `bright` where beads are brighter than what is around them.
+pub fn write_xmalab_cube(list: &BeadList, bright: bool) -> XmaLabCube {
+    let mut files = XmaLabCube {
+        cube: if bright { "white\n" } else { "x y z\n" }.to_owned(),
+        references: String::new(),
+        lost: Vec::new(),
+    };
+    let mut shortened = Vec::new();
+    for (place, Bead { name, at_mm: [x, y, z], radius_mm: _, mark }) in list.0.iter().enumerate() {
+        let number = (place + 1).to_string();
+        // XMALab reads numbers alone here; a name behind them does not disturb it.
+        let behind = if *name == number || name.contains(',') { String::new() } else { format!(",{name}") };
+        files.cube += &format!("{x},{y},{z}{behind}\n");
+        if *mark {
+            let plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == ' ');
+            if !plain || name.chars().count() > XMALAB_NAME {
+                shortened.push(name.as_str());
+            }
+            files.references += &format!("{number} {name}\n");
+        }
+    }
+    if list.0.iter().any(|b| b.radius_mm.is_some()) {
+        files.lost.push("the beads' radii".to_owned());
+    }
+    if !shortened.is_empty() {
+        let names = shortened.join(", ");
+        files.lost.push(format!(
+            "part of the names {names}: XMALab reads {XMALAB_NAME} letters, digits and blanks"
+        ));
+    }
+    files
+}
+
+/// The list as this program's CSV, in mm.
+pub fn write_bead_csv(list: &BeadList) -> String {
+    let rows = list.0.iter().map(|Bead { name, at_mm: [x, y, z], radius_mm, mark }| {
+        let radius = radius_mm.map_or_else(String::new, |r| r.to_string());
+        format!("{name},{x},{y},{z},{radius},{}\n", u8::from(*mark))
+    });
+    "bead,x_mm,y_mm,z_mm,radius_mm,mark\n".to_owned() + &rows.collect::<String>()
+}
+
 /// Reads XMALab's reference beads, `<number from 1> <name>` a line: each gets its name and becomes a mark. Returns how many.
 ///
 /// # Errors

@@ -4,7 +4,9 @@
 
 use std::path::{Path, PathBuf};
 
-use biplane_acquisition::beads::{BeadFile, read_bead_clicks, read_bead_list, read_xmalab_references};
+use biplane_acquisition::beads::{
+    BeadFile, read_bead_clicks, read_bead_list, read_xmalab_references, write_bead_csv, write_xmalab_cube,
+};
 use biplane_acquisition::inspect::describe;
 use biplane_acquisition::meshes::LengthUnit;
 use biplane_acquisition::plates::{read_plate_clicks, read_plate_list};
@@ -192,6 +194,24 @@ fn cubes_of_xmalab_have_a_unit_a_polarity_and_references() {
         let e = read_xmalab_references(write(&folder, "r.txt", text), &mut list).unwrap_err().to_string();
         assert!(e.contains(what), "{e}");
         assert_eq!(list, before);
+    }
+}
+
+#[test]
+fn lists_of_beads_go_out_and_come_back() {
+    let folder = TempDir::new().unwrap();
+    let list = read_beads(&folder, BEADS, LengthUnit::Millimetres).unwrap().list;
+    let again = read_beads(&folder, &write_bead_csv(&list), LengthUnit::Millimetres).unwrap().list;
+    assert_eq!(again, list);
+    for bright in [true, false] {
+        let files = write_xmalab_cube(&list, bright);
+        assert_eq!(files.lost, ["the beads' radii"]);
+        let mut back = read_beads(&folder, &files.cube, LengthUnit::Millimetres).unwrap();
+        assert_eq!(back.bright, Some(bright));
+        read_xmalab_references(write(&folder, "r.txt", &files.references), &mut back.list).unwrap();
+        let mut expected = list.clone();
+        expected.0.iter_mut().for_each(|b| b.radius_mm = None);
+        assert_eq!(back.list, expected);
     }
 }
 
