@@ -204,7 +204,8 @@ impl Calibrating<'_> {
         let frame = || read_frame(path, 0).map(Hashed::new).map_err(|e| e.to_string());
         let (inputs, params) = (self.inputs, &self.inputs.plate_spots);
         let promised = SpotInputs::<Promised> { frame: facts.promise() };
-        let spots = self.step::<FindSpots>(SPOTS, &item, params, &promised, || Ok(SpotInputs { frame: frame()? }))?;
+        let spots =
+            self.step::<FindSpots>(SPOTS, &item, params, &promised, || Ok(SpotInputs { frame: frame()? }))?;
         let own = Item::of([name]);
         let (Some((spots, _)), Some(pattern)) = (spots, &inputs.pattern) else {
             self.follows(DISTORTION, &own);
@@ -239,9 +240,8 @@ impl Calibrating<'_> {
             Err(error) => return self.fault(SPOTS, &item, &error),
         };
         let promised = SpotInputs::<Promised> { frame: facts.promise() };
-        let load = || {
-            Ok(SpotInputs { frame: read_frame(&path, 0).map(Hashed::new).map_err(|e| e.to_string())? })
-        };
+        let load =
+            || Ok(SpotInputs { frame: read_frame(&path, 0).map(Hashed::new).map_err(|e| e.to_string())? });
         let params = &self.inputs.bead_spots;
         Ok(self.step::<FindSpots>(SPOTS, &item, params, &promised, load)?.map(|(spots, _)| spots))
     }
@@ -326,8 +326,7 @@ impl Calibrating<'_> {
                 drawings.extend(drawn.map(|(_, stored)| Drawn::of(title, place, stored)));
             }
         }
-        let given =
-            SpaceDrawingInputs { environment: environment.clone(), beads: inputs.beads.clone() };
+        let given = SpaceDrawingInputs { environment: environment.clone(), beads: inputs.beads.clone() };
         let item = Item::from("fluoroscopes");
         let params = SpaceDrawingParams { max_reprojection_px, max_triangulation_mm };
         let params = ParamsText::of(&params).map_err(ItemError::of)?;
@@ -399,7 +398,12 @@ impl Calibrating<'_> {
     }
 
     /// Keeps a fault, and goes on with what does not need the item.
-    fn fault<T>(&mut self, step: &'static str, item: &Item, why: &dyn std::fmt::Display) -> Result<Option<T>, ItemError> {
+    fn fault<T>(
+        &mut self,
+        step: &'static str,
+        item: &Item,
+        why: &dyn std::fmt::Display,
+    ) -> Result<Option<T>, ItemError> {
         let line = format!("{step}/{item}: {}", self.prepared.study.shorten(&why.to_string()));
         match &mut self.way {
             Way::Look(looks) => looks.push(Look { step, fate: Fate::Fails, line }),
@@ -475,4 +479,3 @@ impl Calibrated {
         Ok(made)
     }
 }
-

@@ -13,6 +13,8 @@ use biplane_acquisition::inspect::InspectError;
 use biplane_stage::{Clean, Context, Size, Store};
 use clap::{ArgAction, Parser, Subcommand};
 
+use crate::convert::{ConvertArguments, ConvertError, convert};
+use crate::correct::{By, CorrectError, correct};
 use crate::diagnostics::slashes;
 use crate::doctor::{DoctorError, doctor};
 use crate::logging::{self, LogFormat};
@@ -172,6 +174,28 @@ The store, .biplane/ beside the pipeline file, keeps what was computed; deleting
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Write the frames without distortion, for other programs; a run needs no such pictures.
+    #[command(after_help = "Examples:
+  biplane correct --output corrected                every frame, and a mask of what is valid
+  biplane correct study --output c --by bilinear")]
+    Correct {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// The folder to write into: TRIAL/VIEW/LABEL.png.
+        #[arg(short, long)]
+        output: PathBuf,
+        /// How a grey between recorded pixels is found.
+        #[arg(long, value_enum, default_value = "bicubic")]
+        by: By,
+        /// Overwrite pictures that are there.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Turn a calibration into another program's format, and say what that cannot hold.
+    #[command(after_help = "Examples:
+  biplane convert results/calibration/fluoroscopes.json --view A --to mayacam2 --output A.txt
+  biplane convert cam1.txt cam2.txt --to jointtrack-biplane --pixel-mm 0.3 --output both.txt")]
+    Convert(ConvertArguments),
     /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses to fill in.
     #[command(
         after_help = "It looks for: folders of pictures side by side (one a fluoroscope), calibrations with the fluoroscope's
@@ -292,6 +316,36 @@ fn obey(command: Command) -> Ended {
             }
             Ok(end)
         }
+        Command::Correct { pipeline, output, by, force } => {
+            let context = Context::new();
+            stop_on_interrupt(&context);
+            match correct(load(&pipeline.file)?, &output, by, force, &context) {
+                Ok(text) => {
+                    print(&text);
+                    Ok(End::Good)
+                }
+                Err(error) => {
+                    let end = match &error {
+                        CorrectError::Stopped => End::Stopped,
+                        CorrectError::Exists(_) | CorrectError::None => End::BadConfiguration,
+                        CorrectError::Store(_) => End::Internal,
+                        _ => End::BadInput,
+                    };
+                    Err((end, error.to_string()))
+                }
+            }
+        }
+        Command::Convert(arguments) => match convert(&arguments) {
+            Ok(text) => {
+                print(&text);
+                Ok(End::Good)
+            }
+            Err(error @ ConvertError::Io { .. }) => Err((End::Internal, error.to_string())),
+            Err(error @ (ConvertError::Exists { .. } | ConvertError::Count { .. })) => {
+                Err((End::BadConfiguration, error.to_string()))
+            }
+            Err(error) => Err((End::BadInput, error.to_string())),
+        },
         Command::Init { folder } => match init::init(&folder) {
             Ok(text) => {
                 print(&text);
@@ -390,7 +444,8 @@ fn calibration_line(outcome: &Outcome) -> String {
         if let Some(fit) = plate {
             let held_out = fit.models.iter().find(|m| m.name == fit.model).map(|m| m.held_out_rms_px);
             let holes = fit.matched.iter().filter(|m| m.used).count();
-            let left = held_out.map_or(String::new(), |px| format!(", {px:.3} px left of {:.2}", fit.before_rms_px));
+            let left =
+                held_out.map_or(String::new(), |px| format!(", {px:.3} px left of {:.2}", fit.before_rms_px));
             text += &format!("{holes} holes, {}{left}; ", fit.model);
         }
         text += &format!(
@@ -467,7 +522,11 @@ fn status(study: &Study) -> Ended {
 }
 
 fn look_failed(error: LookError) -> (End, String) {
-    let end = if matches!(error, LookError::Inputs(_) | LookError::Calibration(_)) { End::BadInput } else { End::Internal };
+    let end = if matches!(error, LookError::Inputs(_) | LookError::Calibration(_)) {
+        End::BadInput
+    } else {
+        End::Internal
+    };
     (end, error.to_string())
 }
 

@@ -11,9 +11,7 @@ use biplane_artifact::{Calibration, Circle, Environment, Match, Verdict};
 use biplane_environment::pixel_by_parameters;
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
-use biplane_optimisation::{
-    Disagreement, EdgeField, View, disagreement, pose_covariance_of_calibration,
-};
+use biplane_optimisation::{Disagreement, EdgeField, View, disagreement, pose_covariance_of_calibration};
 use biplane_outline::RimMesh;
 use biplane_spots::find_border;
 use biplane_stage::{Context, Hashed, Store, StoreError};
@@ -76,8 +74,12 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
     let context = Context::new();
     let (calibrated, _) = calibrate(&prepared, &store, &context, Way::Run(Vec::new()));
     let calibrated = calibrated?.unwrap_or_default();
-    let steps =
-        Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context: &context };
+    let steps = Steps {
+        prepared: &prepared,
+        calibrations: &calibrated.calibrations,
+        store: &store,
+        context: &context,
+    };
     let study = &prepared.study;
     let wanted: Vec<usize> =
         (0..study.trials.len()).filter(|t| trial.is_none_or(|name| study.trials[*t].name == name)).collect();
@@ -202,11 +204,15 @@ impl Looking<'_> {
         }
         of_bodies.retain(|_, list| !list.is_empty());
         if of_bodies.is_empty() {
-            diagnosis.text += "One view alone cannot be held against another: whether it fits is not known.\n\n";
+            diagnosis.text +=
+                "One view alone cannot be held against another: whether it fits is not known.\n\n";
             return;
         }
-        let names: Vec<&str> =
-            self.study().trials[self.trial].frames.iter().map(|(v, _)| self.study().views[*v].name.as_str()).collect();
+        let names: Vec<&str> = self.study().trials[self.trial]
+            .frames
+            .iter()
+            .map(|(v, _)| self.study().views[*v].name.as_str())
+            .collect();
         diagnosis.text += &format!(
             "Views {} and {} about where a body is, across their epipolar planes (limit {limit} mm)\n",
             names.first().unwrap_or(&"1"),
@@ -286,13 +292,14 @@ impl Looking<'_> {
             ]);
         }
         if rows.is_empty() {
-            diagnosis.text +=
-                "No plate picture with a round border: whether the picture has moved on the detector is not known.\n\n";
+            diagnosis.text += "No plate picture with a round border: whether the picture has moved on the detector is not known.\n\n";
             return;
         }
+        diagnosis.text += &format!(
+            "The intensifier's border in the frames less that in the plate's picture (limit {limit} px)\n"
+        );
         diagnosis.text +=
-            &format!("The intensifier's border in the frames less that in the plate's picture (limit {limit} px)\n");
-        diagnosis.text += &aligned(&["view", "frames", "x px", "y px", "radius px", ""], rows.into_iter(), &[1, 2, 3, 4]);
+            &aligned(&["view", "frames", "x px", "y px", "radius px", ""], rows.into_iter(), &[1, 2, 3, 4]);
         diagnosis.text += "\n";
     }
 
@@ -338,8 +345,9 @@ impl Looking<'_> {
     fn of_calibration(&self, environment: &Environment, body: usize, pose: &Pose) -> Option<[f64; 2]> {
         let views: Vec<usize> = self.study().trials[self.trial].frames.iter().map(|(v, _)| *v).collect();
         let parameters = environment.covariance.len();
-        let covariance =
-            DMatrix::from_fn(parameters, parameters, |i, j| environment.covariance[i].get(j).copied().unwrap_or(0.0));
+        let covariance = DMatrix::from_fn(parameters, parameters, |i, j| {
+            environment.covariance[i].get(j).copied().unwrap_or(0.0)
+        });
         let seen: Vec<View> = views
             .iter()
             .map(|v| View {
@@ -367,4 +375,3 @@ fn median(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
-

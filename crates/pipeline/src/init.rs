@@ -250,10 +250,8 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
         missing.push("pictures: no folder of images, and no file with many, was found".to_owned());
     }
     for view in &views {
-        let own = found
-            .calibrations
-            .iter()
-            .find(|(path, format)| !format.has_one_view() || speaks_of(path, view));
+        let own =
+            found.calibrations.iter().find(|(path, format)| !format.has_one_view() || speaks_of(path, view));
         let _ = writeln!(out, "[fluoroscope.{view}]");
         match own {
             Some((path, format)) => {

@@ -8,6 +8,7 @@ pub mod calibrate;
 pub mod cli;
 pub mod config;
 pub mod convert;
+pub mod correct;
 pub mod diagnostics;
 pub mod doctor;
 pub mod drawings;

@@ -60,8 +60,12 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     let context = Context::new();
     let (calibrated, way) = calibrate(&prepared, &store, &context, Way::Look(Vec::new()));
     let calibrated = calibrated?.unwrap_or_default();
-    let steps =
-        Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context: &context };
+    let steps = Steps {
+        prepared: &prepared,
+        calibrations: &calibrated.calibrations,
+        store: &store,
+        context: &context,
+    };
     let looks: Vec<Vec<Look>> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");

@@ -268,18 +268,20 @@ impl Prepared {
         let overlay = faults.keep(ParamsText::of(&()));
         let warnings: Vec<String> = warnings.iter().map(|w| study.shorten(w)).collect();
         match (equipment, segment, matching, overlay, faults.list) {
-            (Some(equipment), Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => Ok(Self {
-                study,
-                index,
-                equipment,
-                meshes,
-                jobs,
-                warnings,
-                segment,
-                matching,
-                overlay,
-                pictures,
-            }),
+            (Some(equipment), Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => {
+                Ok(Self {
+                    study,
+                    index,
+                    equipment,
+                    meshes,
+                    jobs,
+                    warnings,
+                    segment,
+                    matching,
+                    overlay,
+                    pictures,
+                })
+            }
             (.., mut list) => {
                 // What is odd may be the reason of what is wrong: a misspelt name, say.
                 for warning in &warnings {
@@ -365,7 +367,9 @@ fn calibration_inputs(
         });
         let own = study.clicks("beads", &view.name);
         if own.is_file() {
-            clicks.0.extend(faults.keep(read_bead_clicks(&own, number, &beads)).into_iter().flat_map(|c| c.0));
+            clicks
+                .0
+                .extend(faults.keep(read_bead_clicks(&own, number, &beads)).into_iter().flat_map(|c| c.0));
         }
     }
     let spots = |look| ParamsText::of(&SpotParams { look, settings: study.spots.clone() });

@@ -9,7 +9,19 @@ use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
 const ORDER: [&str; 13] = [
-    "study", "fluoroscope", "plate", "beads", "body", "trial", "spots", "distortion", "environment", "segment", "match", "doctor", "output",
+    "study",
+    "fluoroscope",
+    "plate",
+    "beads",
+    "body",
+    "trial",
+    "spots",
+    "distortion",
+    "environment",
+    "segment",
+    "match",
+    "doctor",
+    "output",
 ];
 
 /// The JSON Schema, indented, with a newline at its end.

@@ -100,15 +100,12 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         }
     }
     let mut provenance = provenance(&prepared);
-    let (mut warnings, mut steps) = (prepared.warnings.clone(), STEPS.map(|name| (name, StepCount::default())));
+    let (mut warnings, mut steps) =
+        (prepared.warnings.clone(), STEPS.map(|name| (name, StepCount::default())));
     let mut calibrated = calibration(&prepared, &store, context, &mut steps, &mut warnings)?;
     provenance.inputs.extend(calibrated.inputs.drain(..));
-    let steps_of_frames = Steps {
-        prepared: &prepared,
-        calibrations: &calibrated.calibrations,
-        store: &store,
-        context,
-    };
+    let steps_of_frames =
+        Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context };
     let progress = Progress::new("Matching", prepared.jobs.len());
     let frames: Vec<Option<Frame>> = pool.install(|| {
         prepared
@@ -375,8 +372,11 @@ fn provenance(prepared: &Prepared) -> Provenance {
         if let ViewSource::File { calibration: file, pixel_origin, distortion } = &view.source {
             let distortion = distortion.as_ref().map(|d| format!(", {}", study.relative(d)));
             let (file, origin) = (study.relative(file), pixel_origin.word());
-            let name =
-                format!("{file}{} (view {}, pixel_origin {origin})", distortion.unwrap_or_default(), view.name);
+            let name = format!(
+                "{file}{} (view {}, pixel_origin {origin})",
+                distortion.unwrap_or_default(),
+                view.name
+            );
             inputs.push((name, calibration.hash().to_hex()));
         }
     }
@@ -441,8 +441,7 @@ mod tests {
         };
         let mut provenance = Provenance { parameters: vec![], inputs: vec![("c".into(), "3".into())] };
         let steps = STEPS.map(|name| (name, StepCount::default()));
-        let outcome =
-            gather([frame(2), frame(3)].into_iter(), steps, vec!["first".into()], &mut provenance);
+        let outcome = gather([frame(2), frame(3)].into_iter(), steps, vec!["first".into()], &mut provenance);
         assert_eq!(outcome.steps, [(SEGMENT, StepCount { cached: 2, ran: 5, failed: 0 })], "no empty steps");
         assert_eq!(outcome.warnings, ["first", "w", "w"]);
         assert_eq!(outcome.verdicts(), [0, 0, 2]);

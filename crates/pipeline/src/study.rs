@@ -14,8 +14,8 @@ use biplane_segmentation::{SegmentError, SegmentParams};
 use biplane_spots::{Look, SpotSettings};
 
 use crate::config::{
-    BeadsSection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy, PipelineFile,
-    PlateSection, TrialSection, Units,
+    BeadsSection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy,
+    PipelineFile, PlateSection, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
 
@@ -369,8 +369,14 @@ impl Check {
         let mut placings: Option<(String, usize)> = None;
         let mut kinds = [None, None];
         for (name, section) in sections.0 {
-            let FluoroscopeSection { beads: pictures, plate: on_plate, pixel_mm, calibration, pixel_origin, distortion } =
-                section;
+            let FluoroscopeSection {
+                beads: pictures,
+                plate: on_plate,
+                pixel_mm,
+                calibration,
+                pixel_origin,
+                distortion,
+            } = section;
             kinds[usize::from(pictures.is_some())].get_or_insert_with(|| name.clone());
             if let Some(plated) = on_plate.as_ref().filter(|_| !plate) {
                 let problem = Problem::at(plated.span(), "it is not said what this plate is");
@@ -435,7 +441,9 @@ impl Check {
                     file.span(),
                     format!("{} has no pictures of beads, but {} has", file.get_ref(), pictures.get_ref()),
                 )
-                .help("all fluoroscopes are found from one frame of beads, or all come from calibration files"),
+                .help(
+                    "all fluoroscopes are found from one frame of beads, or all come from calibration files",
+                ),
             );
         }
         views
@@ -471,7 +479,9 @@ impl Check {
                 );
                 None
             }
-            (None, Some(table), Some(_)) => Some(Correction::Table(self.file(&table, "distortion table"), pixel?)),
+            (None, Some(table), Some(_)) => {
+                Some(Correction::Table(self.file(&table, "distortion table"), pixel?))
+            }
             (None, None, Some(_)) => Some(Correction::None(pixel?)),
         }
     }

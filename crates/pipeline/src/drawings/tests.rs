@@ -1,8 +1,8 @@
 //! What must hold of every drawing: well-formed, self-contained, every mark of the artifact drawn once, a bad verdict seen at once.
 
 use biplane_artifact::{
-    Bead, BeadList, Circle, DistortionTable, Environment, Frame, MatchedSpot, ModelScore, PlateFit, PoseRecord,
-    SeenBead, TriangulatedBead, Verdict, ViewEnvironment,
+    Bead, BeadList, Circle, DistortionTable, Environment, Frame, MatchedSpot, ModelScore, PlateFit,
+    PoseRecord, SeenBead, TriangulatedBead, Verdict, ViewEnvironment,
 };
 
 use super::*;
@@ -38,7 +38,10 @@ fn elements(text: &str) -> Vec<Element> {
         while !attributes.is_empty() {
             let (key, after) = attributes.split_once("=\"").expect("a quoted value");
             let (value, after) = after.split_once('"').expect("the quote is closed");
-            assert!(!seen.contains(&key) && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '-'), "{key}");
+            assert!(
+                !seen.contains(&key) && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '-'),
+                "{key}"
+            );
             seen.push(key);
             check_text(value);
             if key == "class" {
@@ -178,7 +181,12 @@ fn environment() -> Environment {
         views: vec![view("A & B", [0.0, -500.0, 0.0]), view("<script>", [500.0, 0.0, 10.0])],
         bead_frames: vec![identity; 2],
         angle_deg: Some(90.3),
-        triangulated: vec![TriangulatedBead { picture: 0, bead: 1, name: "<1>".to_owned(), error_mm: [0.01; 3] }],
+        triangulated: vec![TriangulatedBead {
+            picture: 0,
+            bead: 1,
+            name: "<1>".to_owned(),
+            error_mm: [0.01; 3],
+        }],
         triangulation_rms_mm: Some(0.02),
         covariance: vec![vec![0.1; 18]; 18],
         verdict: Verdict::Good,
@@ -257,7 +265,8 @@ fn numbers_that_are_none_do_no_harm() {
         let mut fit = fit();
         (fit.before_rms_px, fit.pixel_mm, fit.models[0].held_out_rms_px) = (wild, wild, wild);
         fit.border = Some(Circle { centre_px: [wild, 3.0], radius_px: wild });
-        (fit.matched[0].at_px, fit.matched[1].residual_px, fit.missing_px[0]) = ([wild; 2], [wild; 2], [wild; 2]);
+        (fit.matched[0].at_px, fit.matched[1].residual_px, fit.missing_px[0]) =
+            ([wild; 2], [wild; 2], [wild; 2]);
         let params = PlateDrawingParams { max_held_out_px: wild, ..params() };
         check(&plate_drawing(&frame(), &fit, &params).unwrap());
         check(&residual_drawing(&fit, &params).unwrap());
