@@ -294,20 +294,22 @@ fn labels(
     mirrored: bool,
 ) -> Result<Vec<Labelling>, EnvironmentError> {
     let of = |p: &BeadPicture, hand: bool| label(p, detectors[p.view], frame, &p.named, hand);
-    let found: Vec<Result<Labelling, Unlabelled>> = pictures.iter().map(|p| of(p, mirrored)).collect();
     let doubted = |l: &Labelling, p: &BeadPicture| {
         let px = detectors[p.view].size[0].max(detectors[p.view].size[1]) as f64 / 1024.0;
         l.spread_px > px || l.share() < 0.75
     };
-    let mut other_hand = Vec::new();
-    for (p, l) in pictures.iter().zip(&found) {
-        let better = match l {
-            Ok(l) if !doubted(l, p) => false,
-            Ok(l) => of(p, !mirrored).is_ok_and(|o| o.spread_px < 0.3 * l.spread_px && o.found >= l.found),
-            Err(_) => of(p, !mirrored).is_ok(),
-        };
-        if better {
-            other_hand.push(p);
+    let (mut found, mut other_hand) = (Vec::new(), Vec::new());
+    for p in pictures {
+        match of(p, mirrored) {
+            Ok(l) => {
+                let better = |o: Labelling| o.spread_px < 0.3 * l.spread_px && o.found >= l.found;
+                if doubted(&l, p) && of(p, !mirrored).is_ok_and(better) {
+                    other_hand.push(p);
+                }
+                found.push(l);
+            }
+            Err(_) if of(p, !mirrored).is_ok() => other_hand.push(p),
+            Err(why) => return Err(unlabelled(why, p, detectors[p.view], frame, mirrored)),
         }
     }
     if !other_hand.is_empty() {
@@ -316,11 +318,7 @@ fn labels(
         let views = names.into_values().collect::<Vec<_>>().join(", ");
         return Err(EnvironmentError::Mirrored { views, all: other_hand.len() == pictures.len(), mirrored });
     }
-    found
-        .into_iter()
-        .zip(pictures)
-        .map(|(l, p)| l.map_err(|why| unlabelled(why, p, detectors[p.view], frame, mirrored)))
-        .collect()
+    Ok(found)
 }
 
 /// The error of a picture without labels.

@@ -24,6 +24,7 @@ pub(crate) struct Seen {
 
 /// One picture and what is known of its beads.
 pub(crate) struct Task<'a> {
+    /// Taken as points: a shadow's centre is off by a hundredth of a pixel, and lengths need no unit here.
     pub beads: &'a [Point3],
     /// mm; 0 where not known.
     pub radii: &'a [f64],
@@ -47,6 +48,8 @@ pub(crate) struct Labelling {
     pub expected: usize,
     /// Robust standard deviation of a coordinate, px.
     pub spread_px: f64,
+    /// Beads for which a spot would lie as near by chance.
+    by_chance: f64,
 }
 
 /// The part of a detector, in ideal px, that its picture shows: a rectangle, and a circle where the intensifier has a round border.
@@ -142,10 +145,16 @@ impl Task<'_> {
             tolerance_px: self.scaled(15.0),
         };
         let mut good: Vec<Labelling> = Vec::new();
+        let none = vec![None; self.beads.len()];
         let mut best = 0;
         scene.guesses(&triples(self.beads, &sizes.anchors), |guesses| {
             for Guess { view, explained } in guesses {
                 best = best.max(*explained);
+                // Most guesses lead to what is known already.
+                let near = self.nearest(view, sizes, scene.tolerance_px, &none);
+                if good.iter().any(|g| agree(&g.spot, &near)) {
+                    continue;
+                }
                 let Some(grown) = self.grown(view, sizes) else { continue };
                 best = best.max(grown.found);
                 if self.is_good(&grown) && good.iter().all(|g| g.spot != grown.spot) {
@@ -173,16 +182,24 @@ impl Task<'_> {
     /// Whether a labelling can be believed: most of the beads that should be seen are found, all that a person named are.
     fn is_good(&self, l: &Labelling) -> bool {
         let named = self.named.iter().zip(&l.spot).all(|(n, s)| n.is_none() || n == s);
-        named && l.found >= 6 && l.share() >= 0.6 && l.spread_px <= self.scaled(3.0)
+        // Of few beads, nine parameters may explain half by chance.
+        let least = if l.found < 10 { 0.8 } else { 0.5 };
+        let by_chance = 5.0 + 3.0 * l.by_chance;
+        named
+            && l.found >= 6
+            && l.found as f64 > by_chance
+            && l.share() >= least
+            && l.spread_px <= self.scaled(3.0)
     }
 
     /// The labelling that a guess leads to: label what is near, fit, look again, nearer.
     fn grown(&self, guess: &View, sizes: &Sizes) -> Option<Labelling> {
         let mut view = *guess;
+        let none = vec![None; self.beads.len()];
         let mut spread = self.scaled(5.0);
         for (round, reach) in [15.0, 12.0, 9.0, 7.0, 5.0, 4.0, 4.0].into_iter().enumerate() {
             let reach = self.scaled(reach).min(self.scaled(4.0).max(6.0 * spread));
-            let spot = self.nearest(&view, sizes, if round < 2 { self.scaled(15.0) } else { reach });
+            let spot = self.nearest(&view, sizes, if round < 2 { self.scaled(15.0) } else { reach }, &none);
             let observations = self.observations(&spot);
             if observations.len() < 4 {
                 return None;
@@ -203,24 +220,30 @@ impl Task<'_> {
                 .min_by(|a, b| a.1.total_cmp(&b.1))?;
             (view, spread) = fitted;
         }
-        let spot = self.nearest(&view, sizes, self.scaled(3.0).max(6.0 * spread));
+        let reach = self.scaled(3.0).max(6.0 * spread);
+        let spot = self.nearest(&view, sizes, reach, &none);
+        let crowding = self.seen.len() as f64 * std::f64::consts::PI * reach * reach;
+        let by_chance = self.beads.len() as f64 * crowding / (self.size[0] as f64 * self.size[1] as f64);
         let found = spot.iter().flatten().count();
         let spread_px = self.spread(&view, &self.observations(&spot));
         let expected = (0..self.beads.len()).filter(|&b| self.in_picture(&view, b)).count().max(found);
-        Some(Labelling { view, spot, found, expected, spread_px })
+        // What is left and lies nearest to each other, farther off: a bead that is not where the list has it must show.
+        let spot = self.nearest(&view, sizes, self.scaled(15.0), &spot);
+        Some(Labelling { view, spot, found, expected, spread_px, by_chance })
     }
 
     /// Whether a bead's shadow lies in the picture.
     fn in_picture(&self, view: &View, bead: usize) -> bool {
-        view.shadow(&self.beads[bead], self.radii[bead]).is_some_and(|p| self.visible.holds(&p))
+        view.shadow(&self.beads[bead], 0.0).is_some_and(|p| self.visible.holds(&p))
     }
 
-    /// The spot of each bead within reach; each the nearest of the other.
-    fn nearest(&self, view: &View, sizes: &Sizes, reach: f64) -> Vec<Option<usize>> {
+    /// The spot of each bead within reach; each the nearest of the other, of those that are not `taken`.
+    fn nearest(&self, view: &View, sizes: &Sizes, reach: f64, taken: &[Option<usize>]) -> Vec<Option<usize>> {
         let mut of_spot: Vec<Option<(f64, usize)>> = vec![None; self.seen.len()];
-        for (bead, (place, radius)) in self.beads.iter().zip(self.radii).enumerate() {
-            let Some(at) = view.shadow(place, *radius) else { continue };
+        for (bead, place) in self.beads.iter().enumerate() {
+            let Some(at) = view.shadow(place, 0.0) else { continue };
             let near = (0..self.seen.len())
+                .filter(|s| taken[bead].is_none() && !taken.contains(&Some(*s)))
                 .filter(|s| sizes.may_be[bead * self.seen.len() + s])
                 .map(|s| ((self.seen[s].at - at).norm(), s))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
@@ -230,7 +253,7 @@ impl Task<'_> {
                 of_spot[s] = Some((distance, bead));
             }
         }
-        let mut of_bead = vec![None; self.beads.len()];
+        let mut of_bead = taken.to_vec();
         for (s, owner) in of_spot.iter().enumerate() {
             if let Some((_, bead)) = owner {
                 of_bead[*bead] = Some(s);
@@ -249,7 +272,7 @@ impl Task<'_> {
                     set: 0,
                     bead,
                     point: self.beads[bead],
-                    radius: self.radii[bead],
+                    radius: 0.0,
                     at: seen.at,
                     weight: 1.0,
                 })
@@ -265,6 +288,13 @@ impl Task<'_> {
             .collect();
         median(&mut lengths).map_or(f64::INFINITY, |m| m / RAYLEIGH_MEDIAN)
     }
+}
+
+/// Whether most of what `near` labels is labelled so in `known`.
+fn agree(known: &[Option<usize>], near: &[Option<usize>]) -> bool {
+    let labelled = near.iter().flatten().count();
+    let same = known.iter().zip(near).filter(|(k, n)| n.is_some() && k == n).count();
+    same * 5 >= labelled * 4
 }
 
 /// Median length of a vector of two normal coordinates of unit variance: sqrt(2 ln 2).

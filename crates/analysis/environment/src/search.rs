@@ -16,7 +16,7 @@ use crate::view::View;
 /// Distances from source to detector that are assumed, mm.
 const DISTANCES_MM: [f64; 3] = [800.0, 1100.0, 1550.0];
 /// Guesses made for one picture, at most.
-const GUESSES: usize = 6_000_000;
+const GUESSES: usize = 3_000_000;
 /// Rounds of putting depths in.
 const ROUNDS: usize = 5;
 /// Best guesses kept of one triple of beads.
@@ -314,5 +314,5 @@ pub(crate) fn triples(beads: &[Point3], anchors: &[usize]) -> Vec<[usize; 3]> {
         .flat_map(|k| (0..k).flat_map(move |j| (0..j).map(move |i| (k, j, i))))
         .map(|(k, j, i)| [few[k], few[j], few[i]])
         .collect();
-    [chosen(three, 20), chosen(two, 12), chosen(one, 8), chosen(none, 8)].concat()
+    [chosen(three, 20), chosen(two, 12), chosen(one, 8), chosen(none, 16)].concat()
 }

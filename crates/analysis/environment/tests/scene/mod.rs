@@ -1,8 +1,11 @@
 //! What a laboratory would have of a frame of beads: detectors, spots with noise, the list.
 
+// Each test file uses a part of it.
+#![allow(dead_code)]
+
 use biplane_artifact::{Bead, BeadClicks, BeadList, Detector, Environment, Spot, Spots};
 use biplane_environment::{EnvironmentError, EnvironmentParams, find_environment};
-use biplane_geometry::{Point2, Point3, Vector2};
+use biplane_geometry::Point2;
 use biplane_phantom::{BeadFrame, BeadLayout, IntensifierDistortion, TrueFluoroscope, biplane};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -22,9 +25,15 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Two fluoroscopes whose frame stands at `share` of the way from source to detector; noise on the shadows' centres, spots in a
-    /// mixed order.
+    /// Two fluoroscopes whose frame stands at `share` of the way from source to detector; noise of [`NOISE_PX`] on the shadows' centres.
     pub fn drawn(layout: &BeadLayout, share: f64, angle_deg: f64, seed: u64) -> Self {
+        let mut scene = Self::exact(layout, share, angle_deg, seed);
+        scene.add_noise(NOISE_PX, seed);
+        scene
+    }
+
+    /// The same without noise.
+    pub fn exact(layout: &BeadLayout, share: f64, angle_deg: f64, seed: u64) -> Self {
         let views = fluoroscopes(angle_deg, share);
         let frame = BeadFrame::drawn(layout, &views, seed).unwrap();
         let bead = |(i, b): (usize, &biplane_phantom::Ball)| Bead {
@@ -42,9 +51,7 @@ impl Scene {
             distortion: None,
         };
         let detectors = ["A", "B"].into_iter().zip(&views).map(detector).collect();
-        let mut scene = Self { fluoroscopes: views, detectors, spots, list, clicks: None };
-        scene.add_noise(NOISE_PX, seed);
-        scene
+        Self { fluoroscopes: views, detectors, spots, list, clicks: None }
     }
 
     /// Moves every spot at random.
