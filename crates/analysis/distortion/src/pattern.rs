@@ -22,8 +22,10 @@ pub(crate) struct Site {
 /// Why a pattern is none.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PatternError {
-    /// A pitch that is no length.
-    #[error("the plate's pitch is {pitch_mm} mm: expected a length above 0; correct it in pipeline.toml")]
+    /// A pitch that is no distance of holes.
+    #[error(
+        "the plate's pitch is {pitch_mm} mm: expected a length of 1e-3 to 1e6 mm; correct it in pipeline.toml"
+    )]
     Pitch {
         /// As given, mm.
         pitch_mm: f64,
@@ -57,7 +59,15 @@ pub enum PatternError {
 /// A pattern that can be searched.
 #[derive(Debug, Clone)]
 pub(crate) enum Layout {
-    List { nearby: Nearby, spacing: Vec<f64>, radius: Vec<Option<f64>> },
+    /// Spots one by one.
+    List {
+        nearby: Nearby,
+        /// Distance of the nearest other one, mm.
+        spacing: Vec<f64>,
+        /// mm.
+        radius: Vec<Option<f64>>,
+    },
+    /// A lattice without end.
     Lattice(Lattice),
 }
 
@@ -66,7 +76,7 @@ impl Layout {
     /// See [`PatternError`].
     pub(crate) fn new(pattern: &PlatePattern) -> Result<Self, PatternError> {
         let lattice = |pitch_mm: f64, make: fn(f64) -> Lattice| {
-            if pitch_mm > 0.0 && pitch_mm.is_finite() {
+            if (1e-3..=1e6).contains(&pitch_mm) {
                 Ok(Self::Lattice(make(pitch_mm)))
             } else {
                 Err(PatternError::Pitch { pitch_mm })

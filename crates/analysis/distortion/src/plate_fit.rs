@@ -22,6 +22,9 @@ const COVERED_FOR_TILT: f64 = 0.3;
 /// Share of the spots left out of the fit from which it is worth a look.
 const MANY_LEFT_OUT: f64 = 0.05;
 
+/// Most columns or rows of a picture: the table of the map grows with them.
+const MOST_PIXELS: usize = 16_384;
+
 /// Most holes of an endless pattern that are looked for in a picture.
 const MOST_HOLES: usize = 1_000_000;
 
@@ -36,6 +39,9 @@ pub fn fit_plate(
     params: &DistortionParams,
 ) -> Result<PlateFit, DistortionError> {
     params.check()?;
+    if !spots.size.iter().all(|n| (1..=MOST_PIXELS).contains(n)) {
+        return Err(DistortionError::Size { size: spots.size, most: MOST_PIXELS });
+    }
     let (recognised, layout) = recognise(spots, pattern, clicks, params.min_matched_share)?;
     let recorded = |n: &Named| Point2::from(spots.spots[n.spot].at_px);
     let is_whole = |n: &&Named| !spots.spots[n.spot].cut;

@@ -110,6 +110,14 @@ pub enum DistortionError {
     /// The spots that belong to the plate determine no map.
     #[error(transparent)]
     Fit(#[from] FitError),
+    /// A picture of no size, or of one that no detector has.
+    #[error("the spots are of a picture of {} x {} pixels, expected 1 to {most} each way", size[0], size[1])]
+    Size {
+        /// Columns and rows.
+        size: [usize; 2],
+        /// How many there may be.
+        most: usize,
+    },
     /// The spots lie along a line.
     #[error(
         "the {spots} spots that belong to the plate lie along a line: they say nothing of the distortion across it; use a picture in \

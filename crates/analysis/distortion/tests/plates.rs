@@ -448,6 +448,8 @@ fn bad_input_is_an_error_that_names_it() {
     nowhere.spots[5].at_px[1] = f64::INFINITY;
     let error = fails(&nowhere, &scene.list(), &best());
     assert!(matches!(error, DistortionError::Recognise(RecogniseError::Spot { spot: 5, .. })), "{error}");
+    let huge = Spots { size: [1024, usize::MAX], ..spots.clone() };
+    assert!(matches!(fails(&huge, &scene.list(), &best()), DistortionError::Size { .. }));
     let mut same = spots.clone();
     same.spots.iter_mut().for_each(|s| s.at_px = [512.0, 512.0]);
     fails(&same, &scene.list(), &best());
