@@ -12,7 +12,7 @@ const MOST: usize = 1024;
 /// Share of the pixels that may be darker than black, and brighter than white: less than a few beads cover.
 const CUT: f64 = 0.001;
 /// The level of white: bright marks must stand out of it.
-const WHITE: f64 = 205.0;
+const WHITE: f64 = 190.0;
 
 /// A picture as PNG, in base64, and how large it is.
 #[derive(Debug)]

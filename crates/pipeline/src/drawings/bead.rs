@@ -45,9 +45,9 @@ pub fn bead_drawing(
     let shown = Shown::new(environment, view, beads, params.picture);
     let heading = Heading {
         title: match environment.bead_frames.len() {
-            0 | 1 => format!("{}: the frame of beads", shortened(&view.view, 24)),
+            0 | 1 => format!("View {}: the frame of beads", shortened(&view.view, 24)),
             n => format!(
-                "{}: the frame of beads, picture {} of {n}",
+                "View {}: the frame of beads, picture {} of {n}",
                 shortened(&view.view, 24),
                 params.picture + 1
             ),
@@ -138,13 +138,18 @@ impl<'a> Shown<'a> {
             });
         }
         let named = self.named();
-        let mut labels = Labels::new([-0.5, -0.5], extent, named.iter().map(|n| (n.at_px, n.radius_px)));
+        let arrows = self.used.iter().chain(&self.unused).flat_map(|(b, _)| {
+            let (strokes, _) = magnified.arrow(b.at_px, b.residual_px);
+            strokes.into_iter().flatten().map(|p| (p, 3.0 * unit))
+        });
+        let marks = named.iter().map(|n| (n.at_px, n.radius_px)).chain(arrows);
+        let mut labels = Labels::new([-0.5, -0.5], extent, marks);
         let size = 15.0 * unit;
         svg.group(Style::area("names", USED), |svg| {
             for Named { at_px, radius_px, name, colour } in named {
                 let name = shortened(name, 16);
                 let at = labels.place(at_px, radius_px, &name, size);
-                svg.text(at, Font::new(size, colour).bold(), &name);
+                svg.text(at, Font::new(size, colour).bold().edged(), &name);
             }
         });
     }

@@ -33,7 +33,7 @@ pub(super) fn legend(svg: &mut Svg, corner: [f64; 2], entries: &[Entry]) -> f64 
                 svg.strokes(&[vec![left, tip], head], false);
             }
         });
-        let text = number.map_or((*meaning).to_owned(), |n| format!("{n} {meaning}"));
+        let text = number.map_or((*meaning).to_owned(), |n| format!("{meaning}: {n}"));
         let ink = if *number == Some(0) { FAINT } else { INK };
         svg.text([x + 36.0, y + 15.0], Font::new(TEXT - 1.0, ink), &text);
         y += 26.0;

@@ -39,7 +39,7 @@ pub(super) fn heading<'a>(fit: &'a PlateFit, params: &PlateDrawingParams, what: 
     let used = fit.matched.iter().filter(|m| m.used).count();
     let held_out = chosen(fit).map_or(f64::NAN, |m| m.held_out_rms_px);
     Heading {
-        title: format!("{}: {what}", shortened(&params.view, 24)),
+        title: format!("View {}: {what}", shortened(&params.view, 24)),
         caption: format!(
             "{}: held out {} rms (limit {}), {used} of {} matched holes used, distortion {} rms",
             shortened(&fit.model, 40),

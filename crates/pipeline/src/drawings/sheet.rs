@@ -55,7 +55,7 @@ pub(super) fn sheet(heading: &Heading, draw: impl FnOnce(&mut Svg, f64) -> f64) 
             svg.text([MARGIN, y], Font::new(TEXT, Level::Near.ink()), &line);
         }
     }
-    let bottom = draw(&mut svg, y + 16.0) + MARGIN;
+    let bottom = (draw(&mut svg, y + 16.0) + MARGIN).ceil();
     if !good {
         let (inset, width) = (3.0, 6.0);
         svg.group(Style::line("alarm", RED, width), |svg| {

@@ -1,13 +1,14 @@
 //! The fluoroscopes in the laboratory: sources, detectors, central rays, beads and axes, from three sides and as one sees them.
 
 use biplane_artifact::{BeadList, Environment, ViewEnvironment};
-use biplane_geometry::{Point3, Pose, Vector3};
+use biplane_geometry::{Point3, Pose, Vector2, Vector3};
 
 use super::SpaceDrawingParams;
 use super::arrows::round_below;
 use super::colours::{FAINT, INK, Level, RULE, VIEWS};
+use super::labels::Labels;
 use super::sheet::{Heading, MARGIN, Row, SMALL, TEXT, WIDTH, quantity, sheet, shortened, table};
-use super::svg::{Anchor, Font, Style, Svg, text_width};
+use super::svg::{Anchor, Font, Style, Svg};
 
 /// Width of a panel.
 const PANEL: f64 = (WIDTH - 3.0 * MARGIN) / 2.0;
@@ -142,20 +143,27 @@ fn panels(svg: &mut Svg, things: &Things, top: f64) -> f64 {
     y + 8.0
 }
 
-/// A camera that looks at the middle of everything, from the right, the front and above.
+/// A camera that looks at the middle of everything, from the right, the front and above, as near as fits the panel.
 fn perspective(things: &Things, size: [f64; 2]) -> impl Fn(&Point3) -> [f64; 2] {
     let middle = nalgebra::center(&things.low, &things.high);
-    let radius = ((things.high - things.low).norm() / 2.0).max(1.0);
+    let distance = 1.6 * (things.high - things.low).norm();
     let away = Vector3::new(0.42, -0.72, 0.55).normalize();
     let right = Vector3::z().cross(&away).normalize();
     let up = away.cross(&right);
-    let distance = 3.2 * radius;
-    let zoom = 1.16 * size[0].min(1.3 * size[1]) / 2.0 * distance / radius;
-    move |p: &Point3| {
+    let seen = move |p: &Point3| {
         let from = p - middle;
         let depth = (distance - from.dot(&away)).max(0.1 * distance);
-        [size[0] / 2.0 + zoom * from.dot(&right) / depth, size[1] / 2.0 - zoom * from.dot(&up) / depth]
+        Vector2::new(from.dot(&right), -from.dot(&up)) / depth
+    };
+    let shown = things.parts.iter().flat_map(|p| p.corners.iter().chain([&p.source])).chain(&things.beads);
+    let (mut low, mut high) = (Vector2::zeros(), Vector2::zeros());
+    for p in shown.map(seen).filter(|p| p.amax() < 1e3) {
+        low = low.inf(&p);
+        high = high.sup(&p);
     }
+    let room = Vector2::from(size) - Vector2::repeat(60.0);
+    let zoom = room.component_div(&(high - low).add_scalar(1e-6)).min();
+    move |p: &Point3| (Vector2::from(size) / 2.0 + (seen(p) - (low + high) / 2.0) * zoom).into()
 }
 
 /// Everything, through a projection onto the panel.
@@ -189,23 +197,31 @@ fn draw(svg: &mut Svg, things: &Things, size: [f64; 2], onto: &dyn Fn(&Point3) -
             svg.text(at, font, name);
         }
     }
-    for Part { name, colour, source, centre, .. } in &things.parts {
-        let name = shortened(name, 14);
-        for (what, place) in [("source", source), ("detector", centre)] {
-            let text = format!("{name}: {what}");
-            let [x, y] = onto(place);
-            let half = text_width(&text, SMALL) / 2.0;
-            let x = x.clamp(half + 3.0, (size[0] - half - 3.0).max(half + 3.0));
-            // Above its place, and below it where there is no room above.
-            let y = if y > 28.0 { y - 9.0 } else { y + 20.0 };
-            svg.text([x, y], Font::new(SMALL, colour).bold().anchored(Anchor::Middle), &text);
+    names(svg, things, size, onto);
+}
+
+/// The names of sources and detectors: each beside its place, where it covers least.
+fn names(svg: &mut Svg, things: &Things, size: [f64; 2], onto: &dyn Fn(&Point3) -> [f64; 2]) {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|a| (Point3::from(a * things.axis_mm), 12.0));
+    let sources = things.parts.iter().map(|p| (p.source, 5.0));
+    let beads = things.beads.iter().map(|b| (*b, 3.0));
+    let marks = axes.into_iter().chain(sources).chain(beads).map(|(p, radius)| (onto(&p), radius));
+    let mut labels = Labels::new([0.0, 0.0], size, marks);
+    for Part { name, colour, source, corners, .. } in &things.parts {
+        let highest = corners.iter().map(onto).min_by(|a, b| a[1].total_cmp(&b[1]));
+        for (what, at) in [("source", Some(onto(source))), ("detector", highest)] {
+            let text = format!("{}: {what}", shortened(name, 14));
+            if let Some(at) = at {
+                let at = labels.place(at, 6.0, &text, SMALL);
+                svg.text(at, Font::new(SMALL, colour).bold(), &text);
+            }
         }
     }
 }
 
 /// One line a view; returns where it ends.
 fn views(svg: &mut Svg, environment: &Environment, params: &SpaceDrawingParams, top: f64) -> f64 {
-    let triple = |v: [f64; 3]| v.map(|x| quantity(x, 1, "")).join("  ");
+    let triple = |v: [f64; 3]| v.map(|x| quantity(x, 1, "")).join(", ");
     let rows: Vec<Row> = environment
         .views
         .iter()

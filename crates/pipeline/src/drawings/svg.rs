@@ -59,17 +59,24 @@ pub(super) struct Font<'a> {
     pub bold: bool,
     /// Where its place is.
     pub anchor: Anchor,
+    /// Whether it has a dark edge, for pictures of any brightness.
+    pub edged: bool,
 }
 
 impl<'a> Font<'a> {
     /// Plain text that begins at its place.
     pub(super) fn new(size: f64, colour: &'a str) -> Self {
-        Self { size, colour, bold: false, anchor: Anchor::Start }
+        Self { size, colour, bold: false, anchor: Anchor::Start, edged: false }
     }
 
     /// The same, bold.
     pub(super) fn bold(self) -> Self {
         Self { bold: true, ..self }
+    }
+
+    /// The same, with a dark edge.
+    pub(super) fn edged(self) -> Self {
+        Self { edged: true, ..self }
     }
 
     /// The same, set to another end.
@@ -214,8 +221,15 @@ impl Svg {
             Anchor::End => " text-anchor=\"end\"",
         };
         let weight = if font.bold { " font-weight=\"bold\"" } else { "" };
+        let edge = match font.edged {
+            true => format!(
+                "stroke=\"#15191d\" stroke-width=\"{}\" paint-order=\"stroke\"",
+                number(0.22 * font.size)
+            ),
+            false => "stroke=\"none\"".to_owned(),
+        };
         self.0.push_str(&format!(
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" fill=\"{}\" stroke=\"none\"{anchor}{weight}>{}</text>\n",
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" fill=\"{}\" {edge}{anchor}{weight}>{}</text>\n",
             number(font.size),
             escaped(font.colour),
             escaped(text)
