@@ -17,7 +17,7 @@ pub(crate) struct Affine {
 /// The similarity matrix that takes direction `a` to `b`, or its mirror image about `a` to `b`; `None` where `a` has no length.
 fn similarity_of(a: Vector2, b: Vector2, mirrored: bool) -> Option<Matrix2<f64>> {
     let square = a.norm_squared();
-    if !(square > 0.0) {
+    if square.is_nan() || square <= 0.0 {
         return None;
     }
     let sign = if mirrored { -1.0 } else { 1.0 };
@@ -80,9 +80,8 @@ impl Affine {
             mixed += b * a.transpose() * *w;
         }
         // Smaller over larger squared width of the set of points: about a quarter of the determinant over the squared trace.
-        if !(normal.determinant() > 1e-3 * normal.trace().powi(2)) {
-            return None;
-        }
+        let wide_enough = normal.determinant() > 1e-3 * normal.trace().powi(2);
+        wide_enough.then_some(())?;
         Some(Self { linear: mixed * normal.try_inverse()?, from, to })
     }
 }

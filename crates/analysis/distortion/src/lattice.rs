@@ -50,9 +50,8 @@ impl Lattice {
     /// The numbers of all points within `reach` mm of a place; at most `most`, else `None`.
     pub(crate) fn within(&self, place: &Point2, reach: f64, most: usize) -> Option<Vec<[i64; 2]>> {
         let expected = std::f64::consts::PI * (reach + self.pitch_mm).powi(2) * self.density();
-        if !(expected <= 2.0 * most as f64) {
-            return None;
-        }
+        let countable = expected <= 2.0 * most as f64;
+        countable.then_some(())?;
         let rows = |y: f64| y / (self.pitch_mm * self.up.y);
         let mut found = Vec::new();
         for j in (rows(place.y - reach).ceil() as i64)..=(rows(place.y + reach).floor() as i64) {

@@ -70,7 +70,7 @@ impl Nearby {
     /// Numbers and distances of the points within `reach` of a place, nearest first.
     pub(crate) fn within(&self, place: &Point2, reach: f64) -> Vec<(usize, f64)> {
         let mut found = Vec::new();
-        if self.points.is_empty() || !(reach >= 0.0) {
+        if self.points.is_empty() || reach.is_nan() || reach < 0.0 {
             return found;
         }
         let low = self.place(&place.map(|v| v - reach));

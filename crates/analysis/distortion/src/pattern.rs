@@ -89,7 +89,7 @@ impl Layout {
                 if spots.len() < 3 {
                     return Err(PatternError::TooFew { found: spots.len() });
                 }
-                let no_place = |at: &[f64; 2]| at.iter().any(|v| !(v.abs() <= 1e6));
+                let no_place = |at: &[f64; 2]| at.iter().any(|v| !(-1e6..=1e6).contains(v));
                 if let Some((spot, s)) = spots.iter().enumerate().find(|(_, s)| no_place(&s.at_mm)) {
                     return Err(PatternError::Place { spot, at_mm: s.at_mm });
                 }

@@ -139,8 +139,8 @@ fn judge(
     params: &DistortionParams,
 ) {
     let mut faults: Vec<String> = Vec::new();
-    if let Some(score) = fitted.score()
-        && !(score.held_out_rms_px <= params.max_held_out_px)
+    if let Some(score) =
+        fitted.score().filter(|s| !(0.0..=params.max_held_out_px).contains(&s.held_out_rms_px))
     {
         faults.push(format!(
             "held-out residual {:.3} px rms of {}, more than max_held_out_px = {}: look at the residuals; another model or \

@@ -140,7 +140,7 @@ pub(crate) fn recognise(
     least: f64,
 ) -> Result<(Recognised, Layout), RecogniseError> {
     let layout = Layout::new(pattern)?;
-    let no_place = |at: &[f64; 2]| at.iter().any(|v| !(v.abs() <= 1e6));
+    let no_place = |at: &[f64; 2]| at.iter().any(|v| !(-1e6..=1e6).contains(v));
     if let Some((spot, s)) = spots.spots.iter().enumerate().find(|(_, s)| no_place(&s.at_px)) {
         return Err(RecogniseError::Spot { spot, at_px: s.at_px });
     }

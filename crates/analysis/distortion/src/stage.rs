@@ -148,13 +148,13 @@ impl DistortionParams {
         if let Some((name, value)) = shares.into_iter().find(|(_, v)| !(0.0..=1.0).contains(v)) {
             return bad(name, value, "a share of 0 to 1");
         }
-        if !(self.max_held_out_px >= 0.0) {
+        if !(0.0..=f64::MAX).contains(&self.max_held_out_px) {
             return bad("max_held_out_px", self.max_held_out_px, "0 px or more");
         }
         if !(0.0..=90.0).contains(&self.max_tilt_deg) {
             return bad("max_tilt_deg", self.max_tilt_deg, "0 to 90 degrees");
         }
-        if !(self.source_distance_mm >= 1.0) {
+        if !(1.0..=f64::MAX).contains(&self.source_distance_mm) {
             return bad("source_distance_mm", self.source_distance_mm, "1 mm or more");
         }
         Ok(())

@@ -57,9 +57,7 @@ pub(crate) fn tilt(ideal: &[Point2], recorded: &[Point2], size: [usize; 2], sour
     let t = cholesky.solve(&right);
     // Everything relative to the scale and the turn in the middle.
     let [scale, stretch, square, modulus, cubic] = [t[1], t[2] / t[1], t[3] / t[1], t[4] / t[1], t[7] / t[1]];
-    if !(scale.norm() > 1e-3) {
-        return None;
-    }
+    (scale.norm() > 1e-3).then_some(())?;
     let weighted = Complex::new(cubic.re, 3.0 * cubic.im);
     let off =
         if weighted.norm() > 1e-9 { (square.conj() - modulus) / weighted } else { Complex::new(0.0, 0.0) };
