@@ -51,6 +51,12 @@ struct Found {
     films: Vec<String>,
     calibrations: Vec<(String, CalibrationFormat)>,
     distortions: Vec<String>,
+    /// Pictures with a plate, and with beads, in their names.
+    plate_pictures: Vec<String>,
+    bead_pictures: Vec<String>,
+    /// Tables of holes, and of beads.
+    plate_lists: Vec<String>,
+    bead_lists: Vec<String>,
     meshes: Vec<FoundMesh>,
     starts: Vec<String>,
     /// The table of start poses that is to be filled in.
@@ -161,7 +167,12 @@ fn look_at(root: &Path, path: &Path, found: &mut Found) {
     if let Some(format) = ImageFormat::of_start(&start) {
         let several = matches!(format, ImageFormat::Tiff | ImageFormat::Dicom)
             && ImageFile::open(path).is_ok_and(|f| f.info().frames > 1);
-        if several {
+        let says = |words: &[&str]| words.iter().any(|word| speaks_of(&relative(path), word));
+        if says(&["plate", "grid"]) {
+            found.plate_pictures.push(relative(path));
+        } else if says(&["beads", "bead", "cube"]) {
+            found.bead_pictures.push(relative(path));
+        } else if several {
             found.films.push(relative(path));
         } else {
             *found.pictures.entry(relative(path.parent().unwrap_or(root))).or_default() += 1;
@@ -175,8 +186,13 @@ fn look_at(root: &Path, path: &Path, found: &mut Found) {
         });
         found.meshes.push((relative(path), unit, bytes));
     } else if bytes <= MOST_TEXT && ["txt", "csv", "json", ""].contains(&extension.as_str()) {
-        if String::from_utf8_lossy(&start).contains("distorted_x_px") {
+        let start = String::from_utf8_lossy(&start);
+        let header = start.lines().find(|l| !l.trim().is_empty() && !l.starts_with('#')).unwrap_or_default();
+        let column = |name: &str| header.split(',').any(|c| c.trim() == name);
+        if start.contains("distorted_x_px") {
             found.distortions.push(relative(path));
+        } else if column("x_mm") && column("y_mm") && !column("tx_mm") {
+            if column("z_mm") { &mut found.bead_lists } else { &mut found.plate_lists }.push(relative(path));
         } else if let Some(format) =
             std::fs::read_to_string(path).ok().and_then(|t| CalibrationFormat::of_text(&t))
         {
@@ -235,6 +251,14 @@ fn trials(found: &Found) -> Vec<Trial> {
         .collect()
 }
 
+impl Found {
+    /// Whether raw calibration pictures are there for every view, and a list of beads.
+    fn raw(&self, views: &[String]) -> bool {
+        let pictured = |view: &String| self.bead_pictures.iter().any(|path| speaks_of(path, view));
+        !views.is_empty() && !self.bead_lists.is_empty() && views.iter().all(pictured)
+    }
+}
+
 /// The file's text, and what it lacks.
 fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
     let mut missing = Vec::new();
@@ -249,7 +273,23 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
     if views.is_empty() {
         missing.push("pictures: no folder of images, and no file with many, was found".to_owned());
     }
+    let raw = found.raw(&views);
     for view in &views {
+        if raw {
+            let _ = writeln!(out, "[fluoroscope.{view}]");
+            match found.plate_pictures.iter().find(|path| speaks_of(path, view)) {
+                Some(path) => {
+                    let _ = writeln!(out, "plate = {}", quoted(path));
+                }
+                None => {
+                    out += "# plate = \"...\"             # a picture of the plate; for corrected pictures instead:\n\
+                                pixel_mm = 0.3              # FILL IN: side of a pixel on the detector, mm\n"
+                }
+            }
+            let own = found.bead_pictures.iter().find(|path| speaks_of(path, view));
+            let _ = writeln!(out, "beads = {}\n", quoted(own.map_or("FILL IN", String::as_str)));
+            continue;
+        }
         let own =
             found.calibrations.iter().find(|(path, format)| !format.has_one_view() || speaks_of(path, view));
         let _ = writeln!(out, "[fluoroscope.{view}]");
@@ -262,7 +302,8 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
             }
             None => {
                 missing.push(format!(
-                    "a calibration of view {view} (MayaCam 2.0 text with `{view}` in its name)"
+                    "a calibration of view {view} (MayaCam 2.0 text with `{view}` in its name; or a picture of the beads, \
+                     such as beads_{view}.png, and their list)"
                 ));
                 out += "calibration = \"FILL IN\"     # MayaCam 2.0 text as XMALab writes it, or source-and-plane JSON\n";
             }
@@ -274,6 +315,24 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
             None => out += "# distortion = \"...\"        # only if the pictures are not corrected\n",
         }
         out.push('\n');
+    }
+    if raw {
+        if !found.plate_pictures.is_empty() {
+            out += "[plate]\n";
+            match found.plate_lists.first() {
+                Some(path) => {
+                    let _ = writeln!(out, "list = {}", quoted(path));
+                }
+                None => {
+                    missing
+                        .push("where the plate's holes are: a list, or `pattern` and `pitch_mm`".to_owned());
+                    out += "list = \"FILL IN\"            # CSV hole,x_mm,y_mm,radius_mm; or pattern = \"square\" and pitch_mm = 10.0\n";
+                }
+            }
+            out += "spots = \"bright\"            # or \"dark\": holes are bright, dots and balls dark\n\n";
+        }
+        let list = found.bead_lists.first().map_or("FILL IN", String::as_str);
+        let _ = writeln!(out, "[beads]\nlist = {}\nunits = \"mm\"\n", quoted(list));
     }
     compose_bodies(found, &mut out, &mut missing);
     for (trial, pictures) in &trials {

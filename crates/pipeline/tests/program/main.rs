@@ -1,6 +1,7 @@
 //! The program as its users meet it: run on a study made on the spot.
 #![allow(clippy::unwrap_used)]
 
+mod calibration;
 mod messages;
 mod scene;
 mod study;
