@@ -75,7 +75,7 @@ fn main() {
     let greys: Vec<f32> = (0..SIZE * SIZE).map(|_| random.random_range(0.0..255.0)).collect();
 
     let new = || Remap::new(&distortion, [SIZE; 2], [SIZE; 2], None);
-    println!("{:7.2} ms  the map", least(5, new));
+    println!("{:7.2} ms  the map", least(15, new));
     let Ok(remap) = new() else { return };
     let pixels = (0..SIZE * SIZE).map(|k| Point2::new((k % SIZE) as f64, (k / SIZE) as f64));
     let places: Vec<Point2> = pixels.map(|p| distortion.recorded(&p).unwrap_or(p)).collect();
