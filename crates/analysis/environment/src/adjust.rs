@@ -187,7 +187,7 @@ fn linearise(at: &Arrangement, observations: &[Observation], rules: &Rules) -> O
 pub(crate) fn minimise(start: &Arrangement, observations: &[Observation], rules: &Rules) -> Option<Fit> {
     let mut at = start.clone();
     let mut here = linearise(&at, observations, rules)?;
-    let mut damping = 1e-3;
+    let mut damping = 1e-5;
     for _ in 0..STEPS {
         let diagonal = here.normal.diagonal();
         let largest = diagonal.max();

@@ -30,8 +30,7 @@ pub(crate) fn named_beads(
         let (distance_px, spot) = nearest.unwrap_or((f64::INFINITY, 0));
         let radius = page.seen.get(spot).map_or(0.0, |s| s.radius_px);
         let limit_px = (2.0 * radius).max(0.015 * detector.size[0].max(detector.size[1]) as f64);
-        // Not a number is far as well.
-        if !(distance_px <= limit_px) {
+        if distance_px.is_nan() || distance_px > limit_px {
             return Err(EnvironmentError::ClickFar {
                 view: detector.view.clone(),
                 picture: *picture,

@@ -269,6 +269,7 @@ fn label(
     frame: &Frame,
     named: &[Option<usize>],
     mirrored: bool,
+    by_size: bool,
 ) -> Result<Labelling, Unlabelled> {
     let width = detector.size[0];
     let turned = |s: &Seen| Seen { at: turned_round(&s.at, width, mirrored), ..*s };
@@ -283,7 +284,7 @@ fn label(
         size: detector.size,
         visible: picture.visible.turned(|p| turned_round(p, width, mirrored)),
     }
-    .solve()
+    .solve(by_size)
 }
 
 /// Labels of all pictures. Where some do not fit, or fit badly, their mirror images are tried, to say so.
@@ -293,24 +294,36 @@ fn labels(
     frame: &Frame,
     mirrored: bool,
 ) -> Result<Vec<Labelling>, EnvironmentError> {
-    let of = |p: &BeadPicture, hand: bool| label(p, detectors[p.view], frame, &p.named, hand);
+    let of = |p: &BeadPicture, hand: bool, by_size: bool| {
+        label(p, detectors[p.view], frame, &p.named, hand, by_size)
+    };
     let doubted = |l: &Labelling, p: &BeadPicture| {
         let px = detectors[p.view].size[0].max(detectors[p.view].size[1]) as f64 / 1024.0;
         l.spread_px > px || l.share() < 0.75
     };
     let (mut found, mut other_hand) = (Vec::new(), Vec::new());
-    for p in pictures {
-        match of(p, mirrored) {
-            Ok(l) => {
-                let better = |o: Labelling| o.spread_px < 0.3 * l.spread_px && o.found >= l.found;
-                if doubted(&l, p) && of(p, !mirrored).is_ok_and(better) {
-                    other_hand.push(p);
+    'pictures: for p in pictures {
+        let mut most = 0;
+        for by_size in [true, false] {
+            match of(p, mirrored, by_size) {
+                Ok(l) => {
+                    let better = |o: Labelling| o.spread_px < 0.3 * l.spread_px && o.found >= l.found;
+                    if doubted(&l, p) && of(p, !mirrored, by_size).is_ok_and(better) {
+                        other_hand.push(p);
+                    }
+                    found.push(l);
+                    continue 'pictures;
                 }
-                found.push(l);
+                Err(Unlabelled::Unknown { best }) => most = most.max(best),
+                Err(why) => return Err(unlabelled(why, p, detectors[p.view], frame, mirrored)),
             }
-            Err(_) if of(p, !mirrored).is_ok() => other_hand.push(p),
-            Err(why) => return Err(unlabelled(why, p, detectors[p.view], frame, mirrored)),
+            if of(p, !mirrored, by_size).is_ok() {
+                other_hand.push(p);
+                continue 'pictures;
+            }
         }
+        let why = Unlabelled::Unknown { best: most };
+        return Err(unlabelled(why, p, detectors[p.view], frame, mirrored));
     }
     if !other_hand.is_empty() {
         let names: BTreeMap<usize, &str> =
@@ -340,7 +353,7 @@ fn unlabelled(
             }
             // Without the clicks, which of them are off?
             let free = vec![None; listed];
-            let hint = match label(picture, detector, frame, &free, mirrored) {
+            let hint = match label(picture, detector, frame, &free, mirrored, true) {
                 Ok(l) => {
                     let off =
                         (0..listed).filter(|&b| picture.named[b].is_some() && picture.named[b] != l.spot[b]);

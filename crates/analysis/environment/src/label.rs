@@ -121,16 +121,17 @@ impl Task<'_> {
         Point2::from(self.size.map(|n| (n as f64 - 1.0) / 2.0))
     }
 
-    /// The labels of this picture.
-    pub fn solve(&self) -> Result<Labelling, Unlabelled> {
-        let sizes = Sizes::of(self);
-        let free = Sizes::unknown(self);
-        // What sizes say may be wrong (a list without radii, spots that run into others): then without.
-        let first = self.solve_with(&sizes);
-        if first.is_ok() || sizes == free || matches!(first, Err(Unlabelled::Ambiguous { .. })) {
-            return first;
+    /// The labels of this picture, with what sizes say or without: a list may have no radii or wrong ones, and spots run into
+    /// others. Without is not tried where sizes say nothing.
+    pub fn solve(&self, by_size: bool) -> Result<Labelling, Unlabelled> {
+        let (sizes, free) = (Sizes::of(self), Sizes::unknown(self));
+        if by_size {
+            self.solve_with(&sizes)
+        } else if sizes == free {
+            Err(Unlabelled::Unknown { best: 0 })
+        } else {
+            self.solve_with(&free)
         }
-        self.solve_with(&free)
     }
 
     fn solve_with(&self, sizes: &Sizes) -> Result<Labelling, Unlabelled> {
@@ -147,7 +148,7 @@ impl Task<'_> {
         let mut good: Vec<Labelling> = Vec::new();
         let none = vec![None; self.beads.len()];
         let mut best = 0;
-        scene.guesses(&triples(self.beads, &sizes.anchors), |guesses| {
+        scene.guesses(triples(self.beads, &sizes.anchors), |guesses| {
             for Guess { view, explained } in guesses {
                 best = best.max(*explained);
                 // Most guesses lead to what is known already.

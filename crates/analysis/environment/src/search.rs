@@ -176,7 +176,11 @@ impl Scene<'_> {
     }
 
     /// Hands the best guesses from each triple of beads to `accept`, until it says that this will do, or there are no more.
-    pub fn guesses(&self, triples: &[[usize; 3]], mut accept: impl FnMut(&[Guess]) -> bool) {
+    pub fn guesses(
+        &self,
+        triples: impl Iterator<Item = [usize; 3]>,
+        mut accept: impl FnMut(&[Guess]) -> bool,
+    ) {
         let Some(nearest) = NearestSpot::new(self.spots, self.tolerance_px) else { return };
         let relative: Vec<Vector2> = self.spots.iter().map(|p| p - self.middle).collect();
         let mut budget = GUESSES;
@@ -272,47 +276,60 @@ fn spread_order(count: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |i| i * step % count.max(1))
 }
 
-/// Triples of beads to begin with. Large triangles first, those with two of `anchors` (beads that few spots can be) before those with
-/// one, and those with none last; no bead in more than a few of a kind, since it may not be seen.
-pub(crate) fn triples(beads: &[Point3], anchors: &[usize]) -> Vec<[usize; 3]> {
-    // Of a long list, forty are enough to choose from.
-    let few: Vec<usize> = spread_order(beads.len()).filter(|b| !anchors.contains(b)).take(40).collect();
-    let area = |t: &[usize; 3]| {
-        let (a, b) = (beads[t[1]] - beads[t[0]], beads[t[2]] - beads[t[0]]);
-        let longest = a.norm().max(b.norm()).max((a - b).norm());
-        // Slim triangles decide little.
-        a.cross(&b).norm() / longest.max(f64::MIN_POSITIVE)
-    };
-    let chosen = |mut all: Vec<[usize; 3]>, most: usize| {
-        all.sort_by(|a, b| area(b).total_cmp(&area(a)).then(a.cmp(b)));
-        let mut uses = vec![0; beads.len()];
-        let mut out = Vec::new();
-        for t in all {
-            if t.iter().all(|&b| uses[b] < 2 || anchors.contains(&b)) && out.len() < most {
-                t.iter().for_each(|&b| uses[b] += 1);
-                out.push(t);
-            }
+/// Triples of beads to begin with, made as they are asked for. Large triangles first, those with two of `anchors` (beads that few
+/// spots can be) before those with one, and those with none last; no bead in more than a few of a kind, since it may not be seen.
+pub(crate) fn triples<'a>(beads: &'a [Point3], anchors: &[usize]) -> impl Iterator<Item = [usize; 3]> + 'a {
+    // Of a long list, a few are enough to choose from.
+    let few: Vec<usize> = spread_order(beads.len()).filter(|b| !anchors.contains(b)).take(30).collect();
+    let anchors: Vec<usize> = anchors.iter().copied().take(12).collect();
+    let kinds: [(usize, usize); 4] = [(3, 20), (2, 12), (1, 8), (0, 16)];
+    kinds.into_iter().flat_map(move |(of_anchors, most)| {
+        let (rest, mut all) = (3 - of_anchors, Vec::new());
+        for a in subsets(&anchors, of_anchors) {
+            all.extend(
+                subsets(&few, rest)
+                    .into_iter()
+                    .filter_map(|f| <[usize; 3]>::try_from([a.as_slice(), f.as_slice()].concat()).ok()),
+            );
         }
-        out
-    };
-    let pairs = |of: &[usize]| {
-        let of = of.to_vec();
-        (0..of.len())
-            .flat_map(move |i| (0..i).map(move |j| (i, j)))
-            .map(move |(i, j)| [of[i], of[j]])
+        largest(beads, all, &anchors, most)
+    })
+}
+
+/// All subsets of `count` numbers, 0 to 3.
+fn subsets(of: &[usize], count: usize) -> Vec<Vec<usize>> {
+    if count == 0 {
+        return vec![Vec::new()];
+    }
+    let with = |(i, last): (usize, &usize)| {
+        let rest = subsets(&of[..i], count - 1);
+        rest.into_iter()
+            .map(|mut r| {
+                r.push(*last);
+                r
+            })
             .collect::<Vec<_>>()
     };
-    let anchors: Vec<usize> = anchors.iter().copied().take(12).collect();
-    let (of_anchors, of_few) = (pairs(&anchors), pairs(&few));
-    let three: Vec<_> = of_anchors
-        .iter()
-        .flat_map(|p| anchors.iter().filter(|a| **a < p[1]).map(|a| [p[0], p[1], *a]))
-        .collect();
-    let two = of_anchors.iter().flat_map(|p| few.iter().map(|f| [p[0], p[1], *f])).collect();
-    let one = anchors.iter().flat_map(|a| of_few.iter().map(|p| [*a, p[0], p[1]])).collect();
-    let none = (0..few.len())
-        .flat_map(|k| (0..k).flat_map(move |j| (0..j).map(move |i| (k, j, i))))
-        .map(|(k, j, i)| [few[k], few[j], few[i]])
-        .collect();
-    [chosen(three, 20), chosen(two, 12), chosen(one, 8), chosen(none, 16)].concat()
+    of.iter().enumerate().flat_map(with).collect()
+}
+
+/// The triangles of most height, with no bead but anchors in more than two.
+fn largest(beads: &[Point3], all: Vec<[usize; 3]>, anchors: &[usize], most: usize) -> Vec<[usize; 3]> {
+    // Slim triangles decide little.
+    let height = |t: &[usize; 3]| {
+        let (a, b) = (beads[t[1]] - beads[t[0]], beads[t[2]] - beads[t[0]]);
+        let longest = a.norm().max(b.norm()).max((a - b).norm());
+        a.cross(&b).norm() / longest.max(f64::MIN_POSITIVE)
+    };
+    let mut ranked: Vec<(f64, [usize; 3])> = all.into_iter().map(|t| (height(&t), t)).collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut uses = vec![0; beads.len()];
+    let mut out = Vec::new();
+    for (_, t) in ranked {
+        if out.len() < most && t.iter().all(|&b| uses[b] < 2 || anchors.contains(&b)) {
+            t.iter().for_each(|&b| uses[b] += 1);
+            out.push(t);
+        }
+    }
+    out
 }

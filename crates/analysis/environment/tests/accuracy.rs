@@ -1,6 +1,8 @@
 //! How far the source is from the truth, against the Cramer-Rao bound of the same scene, and whether the 95 % region holds it.
 //!
-//! `cargo test -p biplane-environment --test accuracy -- --nocapture` prints both. The bound is computed here, by central differences
+//! `cargo test -p biplane-environment --test accuracy -- --nocapture` printed, of 500 draws each (bound in brackets): 150 mm midway, along
+//! the view 0.443 mm (0.432), across 0.058 mm (0.059), region 94.6 %; 100 mm at 0.7 of the way, 2.681 mm (2.686), 0.170 mm (0.172),
+//! 94.8 %. The bound is computed here, by central differences
 //! of the phantom's own projection.
 
 // Clippy lets `#[test]` functions unwrap, but not what they call.
@@ -55,7 +57,7 @@ fn the_source_is_as_sure_as_it_can_be_and_as_it_says() {
         for frame in 0..25_u64 {
             let exact = Scene::exact(&layout, share, 75.0 + frame as f64, frame);
             let bounds = [0, 1].map(|v| cramer_rao(&exact.fluoroscopes[v], &exact));
-            for draw in 0..20_u64 {
+            for draw in 0..10_u64 {
                 let mut scene = exact.clone();
                 scene.add_noise(NOISE_PX, 1000 * frame + draw);
                 let found = scene.find(&EnvironmentParams::default()).unwrap();
@@ -83,7 +85,7 @@ fn the_source_is_as_sure_as_it_can_be_and_as_it_says() {
         );
         assert!((0.93..=0.97).contains(&share));
         for [found, bound] in [along, across] {
-            // Of 1000 draws the root mean square has a standard deviation of 2.2 %.
+            // Of 500 draws the root mean square has a standard deviation of 3.2 %.
             let ratio = (found / bound).sqrt();
             assert!((0.9..1.1).contains(&ratio), "{ratio}");
         }

@@ -222,7 +222,8 @@ fn mirror_images_are_told_or_taken_as_such() {
 #[test]
 fn a_wrong_unit_is_named() {
     for (unit, mm) in [("centimetres", 10.0), ("inches", 25.4), ("metres", 1000.0), ("micrometres", 0.001)] {
-        for radii_too in [false, true] {
+        // With radii in another unit than the coordinates too; once, since sizes are of no use then and the search is long.
+        for radii_too in [true, false].into_iter().take(if unit == "metres" { 2 } else { 1 }) {
             let mut scene = scene(0);
             for b in &mut scene.list.0 {
                 b.at_mm = b.at_mm.map(|v| v / mm);
