@@ -3,6 +3,7 @@
 
 mod bead_scenes;
 mod bound;
+mod calibrated;
 mod document;
 pub mod elsewhere;
 mod faults;

@@ -53,9 +53,9 @@ pub fn of_a_plate(distortion: Option<IntensifierDistortion>) -> Exposure {
     Exposure { brightness: 0.8, distortion, ..Exposure::fluoroscopy() }
 }
 
-/// The same without noise, on a scale of 16 bits.
-pub fn noiseless(exposure: Exposure) -> Exposure {
-    Exposure { photons_per_px: f64::INFINITY, electronic_noise: 0.0, bits: 16, ..exposure }
+/// A picture with nothing but the detector's blur, on a scale of 16 bits.
+pub fn plain() -> Exposure {
+    Exposure { samples_per_px: 8, detector_blur_px: 1.0, brightness: 0.8, ..Exposure::ideal() }
 }
 
 /// Parts of a vector along a unit vector and across it, mm.

@@ -2,15 +2,11 @@
 
 use std::time::Instant;
 
-use biplane_artifact::{
-    BeadClick, BeadClicks, BeadList, Detector, Environment, PlateFit, Spots, Verdict, ViewEnvironment,
-};
-use biplane_distortion::{DistortionParams, fit_plate};
-use biplane_environment::{EnvironmentParams, find_environment};
+use biplane_artifact::{BeadClick, BeadClicks, Detector, PlateFit, Spots, Verdict, ViewEnvironment};
+use biplane_environment::{EnvironmentParams, covariance_of_point, source_region};
 use biplane_fluoroscope::{Distortion, Fluoroscope};
 use biplane_geometry::{Point3, Vector3};
-use biplane_phantom::{Exposure, IntensifierDistortion, TrueFluoroscope};
-use biplane_spots::find_spots;
+use biplane_phantom::{IntensifierDistortion, TrueFluoroscope};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
@@ -18,13 +14,12 @@ use super::SectionError;
 use crate::bead_scenes::{
     BeadScene, STANDS, Stand, ViewError, VolumeError, beads_of, fluoroscope, mislabelled, rms,
 };
-use crate::bound::{
-    Known, ViewCovariance, fisher_quantile, normalised_square, of_point, of_view, triangulated,
-};
+use crate::bound::{Known, fisher_quantile, normalised_square, of_point, of_view, triangulated};
+use crate::calibrated::{calibrated, environment};
 use crate::faults::{normal_vector, random};
-use crate::plates::{HeldPlate, PlateKind, disturbed};
+use crate::plates::disturbed;
 use crate::plot::{Panel, cumulative, lines, strip};
-use crate::setups::{along_and_across, bent, noiseless, of_a_plate};
+use crate::setups::{along_and_across, bent, of_a_plate, plain};
 use crate::simulated_calibration::{STUDIES, Simulated};
 use crate::{Cell, Column, Distribution, Lab, Row, SceneError, Section, Table};
 
@@ -49,7 +44,7 @@ struct Seen {
 fn seen(lab: &Lab, stand: &Stand, index: usize, number: usize) -> Result<Seen, SceneError> {
     let mut chance = random(lab.seed, 80 + index as u64, number);
     let scene = BeadScene::drawn(stand, &mut chance)?;
-    let exposure = noiseless(of_a_plate(None));
+    let exposure = plain();
     let frames = scene.pictures([&exposure; 2], lab.seed.wrapping_mul(7919).wrapping_add(number as u64))?;
     let mut centres_px = Vec::new();
     let mut found = Vec::new();
@@ -77,16 +72,6 @@ fn seen(lab: &Lab, stand: &Stand, index: usize, number: usize) -> Result<Seen, S
 fn volume(stand: &Stand) -> (f64, f64) {
     let height = (stand.layout)().height_mm;
     (height / 3.0, 0.72 * height)
-}
-
-fn found(
-    detectors: &[Detector; 2],
-    spots: &[Spots; 2],
-    beads: &BeadList,
-    clicks: Option<&BeadClicks>,
-) -> Option<Environment> {
-    let [a, b] = spots;
-    find_environment(&detectors.each_ref(), &[a, b], beads, clicks, &EnvironmentParams::default()).ok()
 }
 
 /// A figure of a scene: what was measured and what the bound says, both squared, summed over so many numbers.
@@ -139,7 +124,7 @@ const FIGURES: [(&str, f64); 8] = [
 fn scored(lab: &Lab, seen: &Seen, stand: usize) -> Option<Scored> {
     let Seen { scene, spots, fresh, .. } = seen;
     let begun = Instant::now();
-    let found = found(&scene.detectors(), spots, &scene.list(), None)?;
+    let found = environment(&scene.detectors(), spots, &scene.list(), None)?;
     let mut s = Scored { seconds: begun.elapsed().as_secs_f64(), ..Scored::default() };
     let none = scene.views.each_ref().map(|v| IntensifierDistortion::none(v.size));
     s.wrong_labels = mislabelled(&found, scene, none.each_ref());
@@ -157,20 +142,15 @@ fn scored(lab: &Lab, seen: &Seen, stand: usize) -> Option<Scored> {
             s.figures[2 * k].add(along * along, bound_along, 1.0);
             s.figures[2 * k + 1].add(across * across, block.trace() - bound_along, 2.0);
         }
-        let stated = stated(&found, index)?;
-        let block: Matrix3<f64> = stated.fixed_view::<3, 3>(0, 0).into_owned();
-        let freedom = freedom(view);
-        let square = normalised_square(&error.source, &block)?;
-        s.sources_held.push(square <= fisher_quantile(3.0, freedom, STATED));
+        s.sources_held.push(source_region(&found, index, STATED)?.holds(&truth.source));
         bounds.push(bound);
     }
     let views: Vec<Fluoroscope> = found.views.iter().map(|v| fluoroscope(v, None)).collect();
     let mut chance = random(lab.seed, 82 + stand as u64, seen.number);
     let freedom: f64 = found.views.iter().map(freedom).sum();
     let quantile = fisher_quantile(3.0, freedom, STATED);
-    let as_found = found.views.iter().zip(&scene.views).map(|(v, truth)| placed(v, truth));
-    let as_found: Vec<TrueFluoroscope> = as_found.collect();
-    let all_stated = [stated(&found, 0)?, stated(&found, 1)?];
+    // Both views count alike where a point is triangulated, so their noise counts together.
+    let sigma_px = rms(found.views.iter().map(|v| v.sigma_px));
     for point in fresh {
         let pixels: Vec<_> = scene
             .views
@@ -183,12 +163,7 @@ fn scored(lab: &Lab, seen: &Seen, stand: usize) -> Option<Scored> {
         let bound = of_point([known(0), known(1)], point)?;
         s.figures[6].add(error.norm_squared(), bound.trace(), 1.0);
         s.points_mm.push(error.norm());
-        let known = |v: usize| Known {
-            view: &as_found[v],
-            covariance: &all_stated[v],
-            sigma_px: found.views[v].sigma_px,
-        };
-        let square = normalised_square(&error, &of_point([known(0), known(1)], point)?)?;
+        let square = normalised_square(&error, &covariance_of_point(&found, point, sigma_px)?)?;
         s.points_held.push(square <= quantile);
     }
     for bead in &found.triangulated {
@@ -200,26 +175,6 @@ fn scored(lab: &Lab, seen: &Seen, stand: usize) -> Option<Scored> {
         s.figures[7].add(Vector3::from(bead.error_mm).norm_squared(), bound.trace(), 1.0);
     }
     Some(s)
-}
-
-/// A found view as a true one.
-fn placed(found: &ViewEnvironment, truth: &TrueFluoroscope) -> TrueFluoroscope {
-    TrueFluoroscope {
-        source: found.source.into(),
-        centre: found.centre.into(),
-        along_x: found.along_x.into(),
-        along_y: found.along_y.into(),
-        pixel_mm: found.pixel_mm,
-        size: truth.size,
-    }
-}
-
-/// The stated covariance of a view.
-fn stated(found: &Environment, view: usize) -> Option<ViewCovariance> {
-    let rows = found.covariance.get(9 * view..9 * view + 9)?;
-    rows.iter()
-        .all(|r| r.len() == 9 * found.views.len())
-        .then(|| ViewCovariance::from_fn(|i, j| rows[i][9 * view + j]))
 }
 
 /// How many residuals more than parameters tell a view's noise.
@@ -367,29 +322,6 @@ struct Chained {
     good: bool,
 }
 
-/// A plate before each of a scene's detectors, as the product sees it; the frames for show.
-fn plates(
-    lab: &Lab,
-    scene: &BeadScene,
-    exposures: [&Exposure; 2],
-    number: usize,
-) -> Result<(Option<[PlateFit; 2]>, Vec<biplane_artifact::Frame>), SceneError> {
-    let mut chance = random(lab.seed, 86, number);
-    let mut frames = Vec::new();
-    let mut fits = Vec::new();
-    for (view, exposure) in scene.views.iter().zip(exposures) {
-        let held = HeldPlate::drawn(PlateKind::Concentric, view, &mut chance);
-        let frame =
-            held.picture(view, exposure, lab.seed.wrapping_mul(6007).wrapping_add(frames.len() as u64))?;
-        let spots = find_spots(&frame, &held.spot_params());
-        fits.extend(
-            spots.ok().and_then(|s| fit_plate(&s, &held.pattern, None, &DistortionParams::default()).ok()),
-        );
-        frames.push(frame);
-    }
-    Ok((<[PlateFit; 2]>::try_from(fits).ok(), frames))
-}
-
 fn chain(lab: &Lab) -> Result<(Table, Vec<biplane_artifact::Frame>), SectionError> {
     let mut table = table(
         "environment-chain",
@@ -407,7 +339,7 @@ fn chain(lab: &Lab) -> Result<(Table, Vec<biplane_artifact::Frame>), SectionErro
     let mut shown = Vec::new();
     for (index, stand) in STANDS.iter().enumerate() {
         type Done = (Option<Chained>, Vec<biplane_artifact::Frame>);
-        let all: Vec<Done> = (0..lab.count(24, 3))
+        let all: Vec<Done> = (0..lab.count(12, 2))
             .into_par_iter()
             .map(|number| {
                 let mut chance = random(lab.seed, 84 + index as u64, number);
@@ -415,33 +347,18 @@ fn chain(lab: &Lab) -> Result<(Table, Vec<biplane_artifact::Frame>), SectionErro
                 let distortions = scene.views.each_ref().map(|v| bent(v.size, &mut chance));
                 let exposures = distortions.map(|d| of_a_plate(Some(d)));
                 let [a, b] = &exposures;
-                let (fits, mut frames) = plates(lab, &scene, [a, b], 100 * index + number)?;
-                let pictures = scene.pictures([a, b], lab.seed.wrapping_mul(104_729) + number as u64)?;
-                let done = fits.and_then(|fits| {
-                    let detectors =
-                        [0, 1].map(|v| scene.detector(v, fits[v].pixel_mm, Some(fits[v].table.clone())));
-                    let spots = [beads_of(&pictures[0]).ok()?, beads_of(&pictures[1]).ok()?];
-                    let found = found(&detectors, &spots, &scene.list(), None)?;
-                    let views: Vec<Fluoroscope> = found
-                        .views
-                        .iter()
-                        .zip(&fits)
-                        .map(|(v, fit)| fluoroscope(v, Some(&fit.table)))
-                        .collect();
-                    let truth = [(&scene.views[0], &distortions[0]), (&scene.views[1], &distortions[1])];
-                    let (radius, height) = volume(stand);
-                    let points = BeadScene::points(radius, height, 10 * POINTS, &mut chance);
-                    let source = |(v, t): (&ViewEnvironment, &TrueFluoroscope)| {
-                        along_and_across(&ViewError::of(v, t).source, &t.normal())
-                    };
-                    Some(Chained {
-                        sources: found.views.iter().zip(&scene.views).map(source).collect(),
-                        error: VolumeError::of(&views, &truth, &points),
-                        good: found.verdict == Verdict::Good
-                            && fits.iter().all(|f| f.verdict == Verdict::Good),
-                    })
+                let (found, frames) = calibrated(lab, &scene, [a, b], 100 * index + number)?;
+                let (radius, height) = volume(stand);
+                let points = BeadScene::points(radius, height, 10 * POINTS, &mut chance);
+                let truth = [(&scene.views[0], &distortions[0]), (&scene.views[1], &distortions[1])];
+                let source = |(v, t): (&ViewEnvironment, &TrueFluoroscope)| {
+                    along_and_across(&ViewError::of(v, t).source, &t.normal())
+                };
+                let done = found.map(|found| Chained {
+                    sources: found.environment.views.iter().zip(&scene.views).map(source).collect(),
+                    error: VolumeError::of(&found.fluoroscopes(), &truth, &points),
+                    good: found.good(),
                 });
-                frames.extend(pictures);
                 Ok::<Done, SceneError>((done, frames))
             })
             .collect::<Result<_, _>>()?;
@@ -503,7 +420,7 @@ fn simulated(lab: &Lab) -> Result<Table, SectionError> {
                 pixel_mm: fits[v].pixel_mm,
                 distortion: Some(fits[v].table.clone()),
             });
-            Some((found(&detectors, &spots, &study.beads, None)?, fits))
+            Some((environment(&detectors, &spots, &study.beads, None)?, fits))
         });
         let Some((found, fits)) = done else {
             let cells = vec![Cell::text("-"); 7].into_iter().chain([Cell::Share(0, 1)]);
@@ -652,7 +569,7 @@ fn faulty(lab: &Lab, seen: &Seen, fault: Fault) -> Faulty {
             }
         }
     }
-    let Some(found) = found(&scene.detectors(), &spots, &beads, clicks.as_ref()) else {
+    let Some(found) = environment(&scene.detectors(), &spots, &beads, clicks.as_ref()) else {
         return Faulty { refused: 1, ..Faulty::default() };
     };
     if found.verdict != Verdict::Good {
