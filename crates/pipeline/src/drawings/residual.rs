@@ -150,7 +150,7 @@ fn histogram(svg: &mut Svg, fit: &PlateFit, params: &PlateDrawingParams, corner:
     }
     let most = bins.iter().copied().max().unwrap_or(0).max(1);
     let [x, y] = corner;
-    let base = y + 24.0 + HEIGHT;
+    let base = y + 40.0 + HEIGHT;
     let title = format!("How long the {} residuals used are", lengths.len());
     svg.text([x, y + 12.0], Font::new(TEXT, INK).bold(), &title);
     svg.group(Style::default(), |svg| {
@@ -171,9 +171,9 @@ fn histogram(svg: &mut Svg, fit: &PlateFit, params: &PlateDrawingParams, corner:
     if limit <= end {
         let at = x + FIELD * limit / end;
         let style = Style { dash: 4.0, ..Style::line("limit", INK, 1.5) };
-        svg.group(style, |svg| svg.line(&[[at, base], [at, y + 20.0]]));
+        svg.group(style, |svg| svg.line(&[[at, base], [at, y + 38.0]]));
         let font = Font::new(SMALL, INK).anchored(if at > x + 60.0 { Anchor::End } else { Anchor::Start });
-        svg.text([at - 5.0, y + 32.0], font, "limit");
+        svg.text([at, y + 33.0], font, "limit");
     }
     base + 18.0
 }

@@ -87,7 +87,8 @@ fn reasons(svg: &mut Svg, heading: &Heading) -> f64 {
 
 /// The warnings as lines of the sheet's width, at most `most_lines` each.
 fn warning_lines(warnings: &[String], most_lines: usize) -> Vec<String> {
-    let columns = ((WIDTH - 2.0 * MARGIN) / text_width("x", TEXT)) as usize;
+    // Prose has many narrow letters: with names one allows for wider ones.
+    let columns = ((WIDTH - 2.0 * MARGIN) / (0.86 * text_width("x", TEXT))) as usize;
     let mut lines = Vec::new();
     for warning in warnings.iter().take(WARNINGS) {
         let mut wrapped = wrapped(&format!("• {warning}"), columns);

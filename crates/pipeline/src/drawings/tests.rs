@@ -32,7 +32,7 @@ fn elements(text: &str) -> Vec<Element> {
         }
         let (inner, alone) = inner.strip_suffix('/').map_or((inner, false), |i| (i, true));
         let (name, mut attributes) = inner.split_once(' ').unwrap_or((inner, ""));
-        assert!(!all.is_empty() == !open.is_empty(), "one root element");
+        assert!(all.is_empty() == open.is_empty(), "one root element");
         let mut seen = Vec::new();
         let mut class = String::new();
         while !attributes.is_empty() {
@@ -145,7 +145,7 @@ fn beads() -> BeadList {
     let bead = |i: u32| Bead {
         name: format!("<{i}>"),
         at_mm: [f64::from(i % 5) * 20.0 - 40.0, f64::from(i / 5) * 20.0 - 40.0, f64::from(i % 3) * 30.0],
-        radius_mm: (i % 2 == 0).then_some(1.5),
+        radius_mm: i.is_multiple_of(2).then_some(1.5),
         mark: false,
     };
     BeadList((0..20).map(bead).collect())
