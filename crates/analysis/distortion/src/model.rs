@@ -387,9 +387,9 @@ mod tests {
         let clean = pairs(&plates()[1], &bent(), 0.03, 9);
         let [mut from, to] = clean.clone();
         // One in twelve is off by a hole (32 px) or by what a scratch does to it, on one side of the picture.
-        let wrong = |i: usize| i % 6 == 0 && to[i].x > 500.0;
+        let wrong = |i: usize| i.is_multiple_of(6) && to[i].x > 500.0;
         for i in (0..from.len()).filter(|i| wrong(*i)) {
-            from[i] += if i % 12 == 0 { Vector2::new(32.0, 3.0) } else { Vector2::new(-0.4, 0.5) };
+            from[i] += if i.is_multiple_of(12) { Vector2::new(32.0, 3.0) } else { Vector2::new(-0.4, 0.5) };
         }
         for model in [Model::Polynomial, Model::LocalWeightedMean, Model::Best] {
             let params = DistortionParams { model, ..DistortionParams::default() };
