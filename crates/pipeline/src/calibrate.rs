@@ -73,6 +73,9 @@ pub struct Calibrating<'a> {
     faults: Vec<String>,
 }
 
+/// The output of a step and its file; none where it is not there, or cannot be.
+type Stepped<A> = Result<Option<(Hashed<A>, PathBuf)>, ItemError>;
+
 /// What a calibration gave, and how its steps were done; or why there is none.
 pub type Walked = (Result<Option<Calibrated>, CalibrateError>, Way);
 
@@ -356,7 +359,7 @@ impl Calibrating<'_> {
         item: &Item,
         params: &ParamsText,
         inputs: S::Inputs,
-    ) -> Result<Option<(Hashed<S::Output>, PathBuf)>, ItemError> {
+    ) -> Stepped<S::Output> {
         let hashes = inputs.hashes();
         self.step::<S>(step, item, params, &hashes, || Ok(inputs))
     }
@@ -369,7 +372,7 @@ impl Calibrating<'_> {
         params: &ParamsText,
         hashes: &<S::Inputs as Inputs>::Hashes,
         load: impl FnOnce() -> Result<S::Inputs, String>,
-    ) -> Result<Option<(Hashed<S::Output>, PathBuf)>, ItemError> {
+    ) -> Stepped<S::Output> {
         let stored: Stored<S::Output> = match &mut self.way {
             Way::Run(done) => {
                 let outcome = self.store.execute::<S, _>(step, item, params, hashes, load, self.context);

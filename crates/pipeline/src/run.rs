@@ -103,7 +103,7 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     let (mut warnings, mut steps) =
         (prepared.warnings.clone(), STEPS.map(|name| (name, StepCount::default())));
     let mut calibrated = calibration(&prepared, &store, context, &mut steps, &mut warnings)?;
-    provenance.inputs.extend(calibrated.inputs.drain(..));
+    provenance.inputs.append(&mut calibrated.inputs);
     let steps_of_frames =
         Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context };
     let progress = Progress::new("Matching", prepared.jobs.len());

@@ -7,11 +7,11 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use biplane_distortion::DistortionParams;
+use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
 use biplane_optimisation::{MatchError, MatchParams};
 use biplane_segmentation::{SegmentError, SegmentParams};
-use biplane_spots::{Look, SpotSettings};
+use biplane_spots::{Look, SpotError, SpotSettings};
 
 use crate::config::{
     BeadsSection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy,
@@ -234,6 +234,20 @@ impl Study {
                 MatchError::Views { .. } | MatchError::Cancelled => None,
             };
             check.list.push(parameter(&text, "match", key, &error.to_string()));
+        }
+        if let Err(error) = file.spots.check() {
+            let key = match &error {
+                SpotError::Parameter { name, .. } => Some(*name),
+                SpotError::Picture { .. } => None,
+            };
+            check.list.push(parameter(&text, "spots", key, &error.to_string()));
+        }
+        if let Err(error) = file.distortion.check() {
+            let key = match &error {
+                DistortionError::Parameter { name, .. } => Some(*name),
+                _ => None,
+            };
+            check.list.push(parameter(&text, "distortion", key, &error.to_string()));
         }
         let study = check.study(file);
         if check.list.is_empty() { Ok(study) } else { Err(wrong(check.list)) }

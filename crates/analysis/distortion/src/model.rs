@@ -1,9 +1,11 @@
 //! Fits the map from recorded to ideal pixels to spots whose places in both are known, and says how good it is.
 //!
-//! Wrong spots are left out first, the same for every model: a polynomial that is at least as flexible as the one that is asked for
-//! is fitted robustly (weights that fall with the residual, Huber's), then again and again to the spots within `reject_sigmas`
-//! times the robust spread of its held-out residuals, until these stay the same. Then every model is fitted by plain least squares to what is
-//! left and scored by what it says of spots that are held out. Beyond the spots a map goes on as a plane; see `reach.rs`.
+//! Wrong spots are left out first, the same for every model. A polynomial that is at least as flexible as the one that is asked
+//! for is fitted robustly (weights that fall with the residual, Huber's), then again and again to the spots within
+//! `reject_sigmas` times the robust spread of its held-out residuals; then the local weighted mean judges in the same way, so
+//! that a spot is wrong that disagrees with its neighbours, not one that a polynomial cannot follow. Every model is fitted by
+//! plain least squares to what is left and scored by what it says of spots that are held out. Beyond the spots a map goes on
+//! as a plane; see `reach.rs`.
 //!
 //! **Guaranteed:** scores of all models are of the same spots; the same pairs give the same bits. **Not guaranteed:** that
 //! wrong spots are found where they are many and agree with each other.
@@ -33,6 +35,9 @@ const SPOTS_PER_FLEXIBLE_COEFFICIENT: usize = 4;
 
 /// Fits with falling weights, and most fits to what is left.
 const ROBUST_ROUNDS: usize = 15;
+
+/// Most fits of the local weighted mean to what is left.
+const LOCAL_ROUNDS: usize = 5;
 
 /// Highest degree of the polynomial that fills holes of the local weighted mean.
 const WHOLE_DEGREE: u32 = 4;
@@ -154,6 +159,23 @@ struct Candidate {
     held_out_px: Vec<Vector2>,
 }
 
+impl Candidate {
+    /// Held-out residuals of all pairs: of those that are not used, what the map says of them.
+    fn held_out_of_all(&self, recorded: &[Point2], target: &[Point2], used: &[bool]) -> Vec<Vector2> {
+        let mut of_used = self.held_out_px.iter();
+        let residual = |((p, q), used): ((&Point2, &Point2), &bool)| {
+            let held_out = if *used { of_used.next().copied() } else { None };
+            held_out.unwrap_or_else(|| self.fit.at(p).0 - q)
+        };
+        recorded.iter().zip(target).zip(used).map(residual).collect()
+    }
+}
+
+/// The points that are used.
+fn kept(all: &[Point2], used: &[bool]) -> Vec<Point2> {
+    all.iter().zip(used).filter(|(_, used)| **used).map(|(p, _)| *p).collect()
+}
+
 /// Fits the models of distortion to spots: `recorded` and `target` are their recorded and their ideal pixels.
 ///
 /// # Errors
@@ -161,10 +183,7 @@ struct Candidate {
 pub fn fit(recorded: &[Point2], target: &[Point2], params: &DistortionParams) -> Result<Fitted, FitError> {
     check(recorded, target, params)?;
     let used = inliers(recorded, target, params)?;
-    let kept = |all: &[Point2]| -> Vec<Point2> {
-        all.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p).collect()
-    };
-    let (from, to) = (kept(recorded), kept(target));
+    let (from, to) = (kept(recorded, &used), kept(target, &used));
 
     let polynomials = (1..=MOST_DEGREE).map(|degree| polynomial_candidate(&from, &to, degree));
     let mut candidates: Vec<Result<Candidate, FitError>> = polynomials.collect();
@@ -183,12 +202,7 @@ pub fn fit(recorded: &[Point2], target: &[Point2], params: &DistortionParams) ->
         }
     };
 
-    let mut of_used = chosen.held_out_px.into_iter();
-    let residual = |((p, q), used): ((&Point2, &Point2), &bool)| {
-        let held_out = if *used { of_used.next() } else { None };
-        held_out.unwrap_or_else(|| chosen.fit.at(p).0 - q)
-    };
-    let held_out_px = recorded.iter().zip(target).zip(&used).map(residual).collect();
+    let held_out_px = chosen.held_out_of_all(recorded, target, &used);
     let reach = Reach::new(&from);
     Ok(Fitted { model: chosen.score.name, scores, held_out_px, used, fit: chosen.fit, reach })
 }
@@ -227,40 +241,53 @@ fn flexible(
     first.map_or_else(|| Polynomial::fit(recorded, target, weights, least).map(|s| (least, s)), Ok)
 }
 
+/// Lengths of residuals and their robust spread: the standard deviation of a coordinate, were they Gaussian.
+fn distances(residuals: &[Vector2]) -> (Vec<f64>, f64) {
+    // Half of the lengths of a Gaussian vector are below 1.1774 standard deviations.
+    let spread = held_out::quantile(residuals, 0.5) / (2.0 * 2.0_f64.ln()).sqrt();
+    (residuals.iter().map(|r| r.norm()).collect(), spread.max(LEAST_SPREAD_PX))
+}
+
 /// Which pairs fit a smooth map.
 fn inliers(recorded: &[Point2], target: &[Point2], params: &DistortionParams) -> Result<Vec<bool>, FitError> {
     let least = if params.model == Model::Polynomial { params.degree } else { 1 };
     let mut weights = vec![1.0; recorded.len()];
     let (degree, mut solved) = flexible(recorded, target, &weights, [least, MOST_DEGREE])?;
-    let distances = |solved: &Solved| -> (Vec<f64>, f64) {
-        let residuals = held_out::of_polynomial(solved, recorded, target);
-        // Half of the lengths of a vector whose coordinates are Gaussian are below 1.1774 standard deviations.
-        let spread = held_out::quantile(&residuals, 0.5) / (2.0 * 2.0_f64.ln()).sqrt();
-        (residuals.iter().map(|r| r.norm()).collect(), spread.max(LEAST_SPREAD_PX))
-    };
     for _ in 0..ROBUST_ROUNDS {
-        let (distances, spread) = distances(&solved);
+        let (distances, spread) = distances(&held_out::of_polynomial(&solved, recorded, target));
         for (weight, distance) in weights.iter_mut().zip(distances) {
             *weight = (spread / distance.max(spread)).max(1e-6);
         }
         solved = Polynomial::fit(recorded, target, &weights, degree)?;
     }
-    let most = (MOST_REJECTED * recorded.len() as f64) as usize;
-    let mut used = Vec::new();
-    for _ in 0..ROBUST_ROUNDS {
-        let (distances, spread) = distances(&solved);
+    let (mut used, mut spread_px) = (Vec::new(), 0.0);
+    // Whether those that are near are the same as before.
+    let mut settle = |residuals: &[Vector2], used: &mut Vec<bool>| {
+        let (distances, spread) = distances(residuals);
         let near: Vec<bool> = distances.iter().map(|d| *d <= params.reject_sigmas * spread).collect();
-        let rejected = near.iter().filter(|near| !**near).count();
-        if rejected > most {
-            let (of, sigmas, spread_px) = (near.len(), params.reject_sigmas, spread);
-            return Err(FitError::TooManyRejected { rejected, of, most, sigmas, spread_px });
-        }
-        if near == used {
+        spread_px = spread;
+        std::mem::replace(used, near) == *used
+    };
+    for _ in 0..ROBUST_ROUNDS {
+        if settle(&held_out::of_polynomial(&solved, recorded, target), &mut used) {
             break;
         }
-        used = near;
         weights = used.iter().map(|used| f64::from(u8::from(*used))).collect();
         solved = Polynomial::fit(recorded, target, &weights, degree)?;
+    }
+    // What a polynomial cannot follow is no fault of a spot that agrees with its neighbours.
+    for _ in 0..LOCAL_ROUNDS {
+        let local = local_candidate(&kept(recorded, &used), &kept(target, &used), params.neighbours);
+        let Ok(local) = local else { break };
+        if settle(&local.held_out_of_all(recorded, target, &used), &mut used) {
+            break;
+        }
+    }
+    let (of, sigmas) = (used.len(), params.reject_sigmas);
+    let rejected = used.iter().filter(|used| !**used).count();
+    let most = (MOST_REJECTED * of as f64) as usize;
+    if rejected > most {
+        return Err(FitError::TooManyRejected { rejected, of, most, sigmas, spread_px });
     }
     Ok(used)
 }
@@ -344,6 +371,11 @@ mod tests {
         [held_out::rms(errors.iter().copied()), held_out::quantile(&errors, 1.0)]
     }
 
+    /// A polynomial of the default degree.
+    fn polynomial() -> DistortionParams {
+        DistortionParams { model: Model::Polynomial, ..DistortionParams::default() }
+    }
+
     fn plates() -> [Plate; 3] {
         let radii = SpotRadii { centre: 2.2, orientation: 1.9, others: 1.25 };
         let square = SpotPattern::Square { pitch_mm: 10.0, reach_mm: 165.0 };
@@ -356,11 +388,12 @@ mod tests {
         for (plate, seed) in plates().iter().zip(1..) {
             let [from, to] = pairs(plate, &bent(), 0.03, seed);
             let fitted = fit(&from, &to, &DistortionParams::default()).unwrap();
+            assert_eq!(fitted.model, "polynomial, degree 5");
             // The project's goal is 0.05 px inside 95 % of the radius.
             let [rms, worst] = true_error(&fitted, &bent());
             assert!(rms < 0.012 && worst < 0.05, "{rms} px, {worst} px at most");
             // A degree less leaves out what the inverse of the cubic map has of the fifth power.
-            let less = DistortionParams { degree: 4, ..DistortionParams::default() };
+            let less = DistortionParams { degree: 4, ..polynomial() };
             let less = fit(&from, &to, &less).unwrap();
             assert!(true_error(&less, &bent())[0] > 2.0 * rms);
             assert!(less.score().unwrap().held_out_rms_px > 1.1 * fitted.score().unwrap().held_out_rms_px);
@@ -372,7 +405,7 @@ mod tests {
     #[test]
     fn what_the_leverage_says_of_a_spot_held_out_is_what_a_fit_without_it_says() {
         let [from, to] = pairs(&plates()[1], &bent(), 0.1, 3);
-        let params = DistortionParams { degree: 6, ..DistortionParams::default() };
+        let params = DistortionParams { degree: 6, ..polynomial() };
         let fitted = fit(&from, &to, &params).unwrap();
         for of in [0, 5, 333, from.len() - 1] {
             let mut weights = vec![1.0; from.len()];
@@ -392,7 +425,7 @@ mod tests {
             from[i] += if i.is_multiple_of(12) { Vector2::new(32.0, 3.0) } else { Vector2::new(-0.4, 0.5) };
         }
         for model in [Model::Polynomial, Model::LocalWeightedMean, Model::Best] {
-            let params = DistortionParams { model, ..DistortionParams::default() };
+            let params = DistortionParams { model, ..polynomial() };
             let fitted = fit(&from, &to, &params).unwrap();
             for (i, used) in fitted.used.iter().enumerate() {
                 assert_eq!(*used, !wrong(i), "{i}: {}", fitted.held_out_px[i].norm());
@@ -403,13 +436,13 @@ mod tests {
         // Where every third is wrong nothing is said.
         let [mut from, to] = clean;
         from.iter_mut().step_by(3).for_each(|p| p.x += 32.0);
-        let error = fit(&from, &to, &DistortionParams::default()).unwrap_err();
+        let error = fit(&from, &to, &polynomial()).unwrap_err();
         assert!(matches!(error, FitError::TooManyRejected { .. }), "{error}");
     }
 
     #[test]
     fn the_best_model_is_that_of_the_least_held_out_residual() {
-        let best = DistortionParams { model: Model::Best, ..DistortionParams::default() };
+        let best = DistortionParams { model: Model::Best, ..polynomial() };
         let [from, to] = pairs(&plates()[2], &bent(), 0.02, 4);
         let fitted = fit(&from, &to, &best).unwrap();
         assert_eq!(fitted.model, "polynomial, degree 5");
@@ -418,7 +451,7 @@ mod tests {
             Vector2::new(1.0, -0.5) * (-(p - Point2::new(400.0, 600.0)).norm_squared() / 7200.0).exp()
         };
         let to: Vec<Point2> = from.iter().zip(&to).map(|(p, q)| q + dent(p)).collect();
-        let fitted = fit(&from, &to, &DistortionParams { reject_sigmas: 50.0, ..best }).unwrap();
+        let fitted = fit(&from, &to, &best).unwrap();
         assert_eq!(fitted.model, "local weighted mean");
         let least = fitted.scores.iter().map(|s| s.held_out_rms_px).fold(f64::INFINITY, f64::min);
         assert_eq!(fitted.score().unwrap().held_out_rms_px, least);
@@ -428,7 +461,7 @@ mod tests {
     fn a_table_follows_its_map_and_leads_back() {
         let [from, to] = pairs(&plates()[0], &bent(), 0.03, 6);
         for model in [Model::Polynomial, Model::LocalWeightedMean] {
-            let fitted = fit(&from, &to, &DistortionParams { model, ..DistortionParams::default() }).unwrap();
+            let fitted = fit(&from, &to, &DistortionParams { model, ..polynomial() }).unwrap();
             let sampled = fitted.table([1024, 1024]);
             assert!(sampled.error_px < 1e-3 && sampled.round_trip_px < 1.1e-3, "{sampled:?}");
             let read = biplane_fluoroscope::Distortion::from(&sampled.table);
@@ -443,7 +476,7 @@ mod tests {
         let [from, to] = pairs(&plates()[0], &bent(), 0.1, 6);
         let models = [(Model::Polynomial, 5), (Model::Polynomial, 7), (Model::LocalWeightedMean, 5)];
         for (model, degree) in models {
-            let params = DistortionParams { model, degree, ..DistortionParams::default() };
+            let params = DistortionParams { model, degree, ..polynomial() };
             let fitted = fit(&from, &to, &params).unwrap();
             for corner in [Point2::new(0.0, 0.0), Point2::new(1023.0, 0.0), Point2::new(-50.0, 1073.0)] {
                 // What a plane leaves of 17 px (12 each way) times the third power of the distance.
@@ -461,7 +494,7 @@ mod tests {
     fn what_cannot_be_fitted_is_an_error_with_its_numbers() {
         let [from, to] = pairs(&plates()[0], &bent(), 0.03, 6);
         let of = |count: usize, degree: u32| {
-            let params = DistortionParams { degree, ..DistortionParams::default() };
+            let params = DistortionParams { degree, ..polynomial() };
             fit(&from[..count], &to[..count], &params).map(|f| f.scores.len())
         };
         let too_few = |found, degree: u32, needed| {
@@ -474,11 +507,11 @@ mod tests {
         let circle: Vec<Point2> =
             (0..80).map(|k| Point2::new(f64::from(k).cos(), f64::from(k).sin()) * 300.0).collect();
         for spots in [line, circle, vec![Point2::origin(); 80]] {
-            let error = fit(&spots, &spots, &DistortionParams::default()).unwrap_err();
+            let error = fit(&spots, &spots, &polynomial()).unwrap_err();
             assert!(matches!(error, FitError::BadlyPlaced { found: 80, .. }), "{error}");
         }
         let with = |params: DistortionParams| fit(&from, &to, &params).map(|_| ()).unwrap_err().to_string();
-        let usual = DistortionParams::default;
+        let usual = polynomial;
         assert!(with(DistortionParams { degree: 8, ..usual() }).starts_with("degree = 8 in [distortion]"));
         assert!(with(DistortionParams { neighbours: 5, ..usual() }).contains("6 to 50"));
         assert!(with(DistortionParams { reject_sigmas: f64::NAN, ..usual() }).contains("at least 2"));

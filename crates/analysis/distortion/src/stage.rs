@@ -35,9 +35,10 @@ pub enum Model {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct DistortionParams {
-    /// The family of maps.
+    /// The family of maps; all are fitted and their held-out residuals reported, whichever is taken.
     pub model: Model,
-    /// Degree of the polynomial, 1 to 7.
+    /// Degree where `model = "polynomial"`, 1 to 7. The thesis has 4; of 12 px of pincushion and of S-shape it leaves 0.03 px that
+    /// 5 does not.
     #[schemars(range(min = 1, max = 7))]
     pub degree: u32,
     /// Neighbours of the local weighted mean, 6 to 50.
@@ -45,7 +46,7 @@ pub struct DistortionParams {
     /// A spot whose residual is this many times the robust spread is left out.
     pub reject_sigmas: f64,
     /// Side of an ideal pixel in the plate's plane, mm. If it is left out, ideal pixels are as large as recorded ones in the middle of
-    /// the picture. It trades against the distance of the source: give it where that distance is to be a true length.
+    /// the picture. It decides only how ideal pixels are counted: lengths come from the plate's pattern.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pixel_mm: Option<f64>,
     /// Held-out residual, root mean square, above which a plate is called doubtful, px.
@@ -75,7 +76,7 @@ pub struct DistortionParams {
 impl Default for DistortionParams {
     fn default() -> Self {
         Self {
-            model: Model::Polynomial,
+            model: Model::Best,
             degree: 5,
             neighbours: 12,
             reject_sigmas: 5.0,
@@ -138,6 +139,15 @@ impl DistortionParams {
         let bad = |name, value, expected| Err(DistortionError::Parameter { name, value, expected });
         if let Some(value) = self.pixel_mm.filter(|v| !(*v > 0.0 && v.is_finite())) {
             return bad("pixel_mm", value, "a length above 0 mm");
+        }
+        if !(1..=7).contains(&self.degree) {
+            return bad("degree", f64::from(self.degree), "1 to 7");
+        }
+        if !(6..=50).contains(&self.neighbours) {
+            return bad("neighbours", self.neighbours as f64, "6 to 50");
+        }
+        if !(self.reject_sigmas > 0.0) {
+            return bad("reject_sigmas", self.reject_sigmas, "a number above 0");
         }
         let shares = [
             ("min_matched_share", self.min_matched_share),

@@ -57,7 +57,10 @@ impl Default for SpotSettings {
 
 impl SpotSettings {
     /// Checks that every parameter is in its range.
-    pub(crate) fn check(&self) -> Result<(), SpotError> {
+    ///
+    /// # Errors
+    /// Names the first one that is not.
+    pub fn check(&self) -> Result<(), SpotError> {
         let Self { min_radius_px, max_radius_px, min_contrast } = *self;
         let is = |holds: bool, name: &'static str, value: f64, expected: &'static str| {
             if holds { Ok(()) } else { Err(SpotError::Parameter { name, value, expected }) }

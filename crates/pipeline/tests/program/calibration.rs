@@ -84,10 +84,7 @@ fn raw_pictures_become_fluoroscopes_and_poses_and_what_changed_alone_runs_again(
         assert!(raw.path("results/calibration").join(name).is_file(), "{name}");
     }
     let report = raw.read("results/report.html");
-    assert!(
-        report.contains("fluoroscopes.svg") && report.contains("left after it, held out"),
-        "shown"
-    );
+    assert!(report.contains("fluoroscopes.svg") && report.contains("left after it, held out"), "shown");
     // The simulator's truth, which is not in the study: sources of A and B.
     let found: serde_json::Value =
         serde_json::from_str(&raw.read("results/calibration/fluoroscopes.json")).unwrap();
