@@ -20,9 +20,10 @@ use crate::polynomial::{self, MOST_DEGREE, Polynomial, Solved, coefficients};
 use crate::reach::Reach;
 use crate::stage::{DistortionParams, Model};
 
-/// Least robust spread of residuals that counts, px (standard deviation of a coordinate): the finder of spots knows no better,
-/// and pictures without noise would lose spots to what a model cannot follow.
-const LEAST_SPREAD_PX: f64 = 0.01;
+/// Least robust spread of residuals that counts, px (standard deviation of a coordinate). Spots of a dim rim are several times
+/// as noisy as the usual one, and the map needs them there, while a wrong hole is off by whole pixels: on a real grid
+/// (`tests/real_grid.rs`) 0.01 px for this uses 6352 of 6910 dots, 0.05 px uses 6635.
+const LEAST_SPREAD_PX: f64 = 0.05;
 
 /// Largest share of spots that may be left out.
 const MOST_REJECTED: f64 = 0.2;

@@ -146,8 +146,8 @@ impl DistortionParams {
         if !(6..=50).contains(&self.neighbours) {
             return bad("neighbours", self.neighbours as f64, "6 to 50");
         }
-        if !(self.reject_sigmas > 0.0) {
-            return bad("reject_sigmas", self.reject_sigmas, "a number above 0");
+        if !(2.0..=1e9).contains(&self.reject_sigmas) {
+            return bad("reject_sigmas", self.reject_sigmas, "at least 2");
         }
         let shares = [
             ("min_matched_share", self.min_matched_share),
