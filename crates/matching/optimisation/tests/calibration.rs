@@ -1,6 +1,8 @@
 //! What a wrong calibration does to matches, against ideal outlines of the phantom's femoral component, whose truth the code under
 //! test has no part in.
 
+#![allow(clippy::unwrap_used)]
+
 use biplane_artifact::Curves;
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Point3, Pose, Vector3};
