@@ -117,8 +117,8 @@ struct Looking<'a> {
     trial: usize,
 }
 
-/// One body in one frame that was called good.
-struct Good {
+/// One body in one frame whose match did not fail.
+struct Matched {
     body: usize,
     pose: Pose,
     found: Match,
@@ -140,38 +140,39 @@ impl Looking<'_> {
         let name = &study.trials[self.trial].name;
         let jobs: Vec<&Job> = self.jobs().collect();
         let progress = Progress::new("Looking", jobs.len());
-        let looked: Vec<Option<Vec<Good>>> = jobs
+        let looked: Vec<Option<Vec<Matched>>> = jobs
             .par_iter()
             .map(|job| {
-                let good = self.good(job);
+                let matches = self.matches(job);
                 progress.tick();
-                good
+                matches
             })
             .collect();
         drop(progress);
-        let all: Vec<Good> = looked.into_iter().flatten().flatten().collect();
+        let all: Vec<Matched> = looked.into_iter().flatten().flatten().collect();
         if all.is_empty() {
             return Err(DoctorError::NoMatch(name.clone()));
         }
-        diagnosis.text += &format!("Trial {name}: {} good matches in {} frames\n\n", all.len(), jobs.len());
+        diagnosis.text += &format!("Trial {name}: {} matches in {} frames\n\n", all.len(), jobs.len());
         self.views_agree(&all, diagnosis);
         self.borders_stay(&jobs, diagnosis);
         self.poses_are_sure(&all, diagnosis);
         Ok(())
     }
 
-    /// The good matches of a frame; none unless everything that it takes is in the store.
-    fn good(&self, job: &Job) -> Option<Vec<Good>> {
+    /// The matches of a frame; none unless everything that it takes is in the store.
+    fn matches(&self, job: &Job) -> Option<Vec<Matched>> {
         let mut curves = Vec::new();
         for slot in 0..job.pictures.len() {
             curves.push(self.steps.explain_segment(job, slot).ok()?.1?);
         }
-        let mut good = Vec::new();
+        let mut found_here = Vec::new();
         let mut views: Option<Vec<View>> = None;
         for (place, (body, ..)) in job.bodies.iter().enumerate() {
             let Ok((_, Some(stored))) = self.steps.explain_match(job, place, &curves) else { continue };
             let Ok(found) = read_stored(self.steps.store, &stored) else { continue };
-            if found.verdict != Verdict::Good {
+            // What a wrong calibration made doubtful speaks too.
+            if found.verdict == Verdict::Failed {
                 continue;
             }
             if views.is_none() {
@@ -186,9 +187,9 @@ impl Looking<'_> {
             let search = self.study().matching.search();
             let pair = views.as_deref().and_then(|v| v.get(..2));
             let disagreement = pair.and_then(|pair| disagreement(&self.meshes[*body], pair, &pose, &search));
-            good.push(Good { body: *body, pose, found: Match::clone(&found), disagreement });
+            found_here.push(Matched { body: *body, pose, found: Match::clone(&found), disagreement });
         }
-        Some(good)
+        Some(found_here)
     }
 
     fn fluoroscope(&self, view: usize) -> Fluoroscope {
@@ -196,7 +197,7 @@ impl Looking<'_> {
         Fluoroscope::from(&**calibration)
     }
 
-    fn views_agree(&self, all: &[Good], diagnosis: &mut Diagnosis) {
+    fn views_agree(&self, all: &[Matched], diagnosis: &mut Diagnosis) {
         let limit = self.study().doctor.max_disagreement_mm;
         let mut of_bodies: BTreeMap<usize, Vec<Disagreement>> = BTreeMap::new();
         for good in all {
@@ -303,7 +304,7 @@ impl Looking<'_> {
         diagnosis.text += "\n";
     }
 
-    fn poses_are_sure(&self, all: &[Good], diagnosis: &mut Diagnosis) {
+    fn poses_are_sure(&self, all: &[Matched], diagnosis: &mut Diagnosis) {
         let Some(environment) = &self.calibrated.environment else {
             diagnosis.text += "The calibration comes from files, which do not say how sure it is: what it adds to the uncertainty of a \
                                pose is not known.\n";
@@ -312,7 +313,7 @@ impl Looking<'_> {
         let limit = self.study().doctor.max_pose_sigma_mm;
         let mut rows = Vec::new();
         for body in self.study().trials[self.trial].bodies.iter().copied() {
-            let own: Vec<&Good> = all.iter().filter(|g| g.body == body).collect();
+            let own: Vec<&Matched> = all.iter().filter(|g| g.body == body).collect();
             let Some(good) = own.get(own.len() / 2) else { continue };
             let sigma = self.of_calibration(environment, body, &good.pose);
             let judged = match sigma {

@@ -192,8 +192,7 @@ impl Prepared {
         let mut faults = Faults { study: &study, list: Vec::new() };
         let mut warnings = Vec::new();
         let equipment = if study.calibrates() {
-            calibration_inputs(&study, &mut faults, &mut warnings)
-                .map(|inputs| Equipment::Pictures(Box::new(inputs)))
+            calibration_inputs(&study, &mut faults).map(|inputs| Equipment::Pictures(Box::new(inputs)))
         } else {
             let calibrations = study.views.iter().filter_map(|v| faults.keep(calibration(v)).flatten());
             Some(Equipment::Known(calibrations.map(Hashed::new).collect()))
@@ -330,11 +329,7 @@ fn calibration(view: &View) -> Result<Option<Calibration>, CalibrationError> {
     Ok(Some(calibration))
 }
 
-fn calibration_inputs(
-    study: &Study,
-    faults: &mut Faults<'_>,
-    warnings: &mut Vec<String>,
-) -> Option<CalibrationInputs> {
+fn calibration_inputs(study: &Study, faults: &mut Faults<'_>) -> Option<CalibrationInputs> {
     let pattern = match &study.plate {
         None => None,
         Some(plate) => Some(match &plate.pattern {
@@ -347,7 +342,9 @@ fn calibration_inputs(
     };
     let frame = study.beads.as_ref()?;
     let mut read = faults.keep(read_bead_list(&frame.list, unit(frame.units)))?;
-    warnings.extend(read.notes.iter().map(|note| format!("{}: {note}", study.relative(&frame.list))));
+    for note in &read.notes {
+        tracing::info!("{}: {note}", study.relative(&frame.list));
+    }
     if let Some(references) = &frame.references {
         faults.keep(read_xmalab_references(references, &mut read.list))?;
     }

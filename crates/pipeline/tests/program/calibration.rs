@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::scene::run;
+use crate::scene::{Scene, run};
 
 /// A copy of the fixture with its first frame and the tibia alone.
 struct Raw {
@@ -84,7 +84,7 @@ fn raw_pictures_become_fluoroscopes_and_poses_and_what_changed_alone_runs_again(
         assert!(raw.path("results/calibration").join(name).is_file(), "{name}");
     }
     let report = raw.read("results/report.html");
-    assert!(report.contains("fluoroscopes.svg") && report.contains("left after it, held out"), "shown");
+    assert!(report.contains("fluoroscopes.svg") && report.contains("left, held out px"), "shown");
     // The simulator's truth, which is not in the study: sources of A and B.
     let found: serde_json::Value =
         serde_json::from_str(&raw.read("results/calibration/fluoroscopes.json")).unwrap();
@@ -176,4 +176,27 @@ fn init_recognises_raw_calibration_pictures() {
     );
     let (code, out, err) = raw.biplane(&["plan"]);
     assert_eq!(code, 0, "{out}\n{err}\n{text}");
+}
+
+#[test]
+fn a_fluoroscope_that_was_moved_after_its_calibration_is_found_by_the_doctor() {
+    let scene = Scene::new();
+    let (code, _, err) = scene.biplane(&["doctor"]);
+    assert!(code == 3 && err.contains("`biplane run` first"), "{err}");
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    let (code, out, err) = scene.biplane(&["doctor"]);
+    assert!(code == 0 && out.contains("fits") && !out.contains("does not fit"), "{out}\n{err}");
+    assert!(out.contains("do not say how sure"), "a file without covariance: {out}");
+
+    // The second fluoroscope 0.25 mm higher than its calibration says.
+    scene.write(
+        "B.txt",
+        scene.read("B.txt").replace("translation\n0\n0\n", "translation\n0\n0.25\n").as_bytes(),
+    );
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert!(code == 0 && out.contains("0 failed"), "the poses still fit, each view half\n{out}\n{err}");
+    let (code, out, err) = scene.biplane(&["doctor", "--trial", "squat"]);
+    assert!(code == 1 && out.contains("does not fit"), "{out}\n{err}");
+    let (code, _, err) = scene.biplane(&["doctor", "--trial", "other"]);
+    assert!(code == 2 && err.contains("squat"), "{err}");
 }

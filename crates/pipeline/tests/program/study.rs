@@ -226,7 +226,7 @@ fn overlays_of_frames_that_are_gone_go_and_a_persons_files_stay() {
     }
     let (code, _, err) = scene.biplane(&["run"]);
     assert_eq!(code, 0, "{err}");
-    assert!(err.contains("removed 2 overlay(s) of earlier runs"), "{err}");
+    assert!(err.contains("removed 2 picture(s) of earlier runs"), "{err}");
     let overlay = |frame: &str| scene.path(&format!("results/overlays/squat/{frame}.png")).exists();
     assert!(!overlay("0001_A") && !overlay("0001_B") && overlay("0000_A") && overlay("0002_B"));
     scene.edit("name = \"squat\"", "name = \"lunge\"");
