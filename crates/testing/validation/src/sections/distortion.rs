@@ -151,7 +151,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     };
     let (mut shown, mut series, mut compared) = (Vec::new(), Vec::new(), Vec::new());
     for kind in PlateKind::ALL {
-        let setups: Vec<Setup> = (0..lab.count(20, 2))
+        let setups: Vec<Setup> = (0..lab.count(10, 1))
             .into_par_iter()
             .map(|number| Setup::drawn(lab, kind, number))
             .collect::<Result<_, _>>()?;
@@ -167,7 +167,8 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         let errors: Vec<f64> = measured.iter().flatten().map(|m| m.error.rms_px).collect();
         series.push(cumulative(kind.name(), &errors));
         shown.push(setups[0].frame.clone());
-        compared.extend(setups.into_iter().take(lab.count(5, 1)));
+        let of_kind = if kind == PlateKind::Concentric { 1 } else { 0 };
+        compared.extend(setups.into_iter().take(lab.count(2, of_kind)));
     }
     let (by_model, model_dots) = compare_models(&compared);
     let simulated = simulated(lab)?;
@@ -180,7 +181,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
              defaults. Error: root mean square length between where the map and where the truth puts recorded pixels on the \
              plate, every 8 px inside 95 % of the border's radius, in pixels there, after the best rigid motion of the plane; \
              and, where each spot of the plate is known by itself so that nothing is free, without one. The goal is 0.05 px.",
-            lab.count(20, 2)
+            lab.count(10, 1)
         ),
         "The held-out residual, by which models are chosen, has the noise of the spots in it: where it is honest, it is no \
          smaller than the error of the map and the error of the spots' centres together."
@@ -336,7 +337,9 @@ fn real(lab: &Lab) -> Result<Option<Table>, SectionError> {
     let spots = find_spots(&frame, &SpotParams { look: Look::Dark, settings });
     let pattern = PlatePattern::Square { pitch_mm: GRID_PITCH_MM };
     let mut rows = Vec::new();
-    for (name, params) in models().into_iter().filter(|m| !m.0.ends_with(['1', '2', '6', '7'])) {
+    let full = ["degree 3", "degree 4", "degree 5", "degree 6", "weighted mean"];
+    let shown = if lab.full() { full.as_slice() } else { &full[2..3] };
+    for (name, params) in models().into_iter().filter(|m| shown.iter().any(|s| m.0.ends_with(s))) {
         let fit = spots.as_ref().ok().and_then(|s| fit_plate(s, &pattern, None, &params).ok());
         let label = format!("dot grid, {name}");
         let Some(fit) = fit else {

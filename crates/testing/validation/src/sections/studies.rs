@@ -118,7 +118,8 @@ pub fn simulated(lab: &Lab) -> Result<Option<Section>, SectionError> {
             "Nothing of this program had a part in these: pictures by gVirtualXray (`fixtures/knee`, the example study, and \
              `fixtures/knee-natural`), from finer meshes than the ones matched, distorted, blurred and noisy; and ideal outlines \
              of a mesh of 36,000 points (`fixtures/scene`) with models of fewer. Fluoroscopes are calibrated by the stages \
-             from the simulator's pictures of a plate and a frame of beads. Pictures: starts exactly 6 mm and 6 degrees off. Outlines: starts as in Table 4.1."
+             from the simulator's pictures of a plate and a frame of beads. Pictures: starts exactly 6 mm and 6 degrees off. \
+             Outlines: starts as in Table 4.1."
                 .to_owned(),
         ],
         tables: vec![pictures, outlines],
