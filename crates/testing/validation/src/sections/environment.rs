@@ -308,7 +308,8 @@ fn text(count: usize) -> Vec<String> {
             .to_owned(),
         "Through distortion: the whole way from raw pictures. A plate before each intensifier, the beads in the bent picture, both \
          noisy, 8 bit. *Projected*: how far points of the volume are from the rays of the pixels where they are truly recorded, in \
-         their depth; *triangulated*: from both such rays. So all that is left of calibration and distortion together."
+         their depth; *triangulated*: from both such rays. So all that is left of calibration and distortion together, of a plate \
+         and a frame of beads whose lists are exact, as no laboratory's are: an error of a list comes on top."
             .to_owned(),
         "Bad inputs: what a laboratory gets wrong. A calibration that comes out of it counts as wrong if it puts points of the \
          volume farther off than the limit that the stage itself states for its beads (root mean square)."
