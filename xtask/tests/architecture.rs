@@ -17,7 +17,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope", "biplane-phantom"],
+    &["biplane-fluoroscope", "biplane-phantom", "biplane-spline"],
     &["biplane-outline"],
     &[
         "biplane-acquisition",
@@ -25,6 +25,8 @@ const LAYERS: &[&[&str]] = &[
         "biplane-distortion",
         "biplane-environment",
         "biplane-segmentation",
+        "biplane-slices",
+        "biplane-contour",
         "biplane-optimisation",
     ],
     &["biplane"],
@@ -36,13 +38,16 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 10] = [
+const METHOD: [&str; 13] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
     "crates/analysis/environment",
     "crates/analysis/segmentation",
+    "crates/analysis/slices",
+    "crates/analysis/spline",
     "crates/analysis/spots",
+    "crates/matching/contour",
     "crates/matching/fluoroscope",
     "crates/matching/outline",
     "crates/matching/optimisation",

@@ -6,6 +6,7 @@
 
 mod calibration;
 mod content;
+mod contour;
 mod curves;
 mod drawing;
 mod environment;
@@ -16,9 +17,11 @@ mod npy;
 mod picture;
 mod plate;
 mod spots;
+mod volume;
 
 pub use calibration::{Calibration, DistortionTable, PixelOrigin};
 pub use content::{Artifact, Content, ContentHash, ContentHasher, DecodeError};
+pub use contour::{Contour, ContourPiece, EditedContour, EditedPiece};
 pub use curves::Curves;
 pub use drawing::Drawing;
 pub use environment::{
@@ -30,3 +33,4 @@ pub use model::{ModelMesh, Start};
 pub use picture::Picture;
 pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};
 pub use spots::{Circle, Spot, Spots};
+pub use volume::Volume;
