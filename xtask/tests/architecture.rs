@@ -17,7 +17,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope", "biplane-phantom", "biplane-spline"],
+    &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
     &["biplane-outline"],
     &[
         "biplane-acquisition",
@@ -38,11 +38,12 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 13] = [
+const METHOD: [&str; 14] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
     "crates/analysis/environment",
+    "crates/analysis/grey",
     "crates/analysis/segmentation",
     "crates/analysis/slices",
     "crates/analysis/spline",

@@ -8,7 +8,7 @@
 use biplane_artifact::Circle;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::grey::Grey;
+use biplane_grey::Grey;
 
 /// Rays from the middle.
 const RAYS: usize = 720;

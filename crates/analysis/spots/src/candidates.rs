@@ -10,7 +10,7 @@ use std::f64::consts::{E, SQRT_2};
 
 use crate::Look;
 use crate::cells::Cells;
-use crate::grey::Grey;
+use biplane_grey::Grey;
 
 /// A place that may be a spot.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,12 +7,12 @@ use crate::border::{border, mirrored_beyond};
 use crate::candidates::{Candidate, candidates};
 use crate::cells::Cells;
 use crate::fit::{Effort, Fit, fit};
-use crate::grey::Grey;
 use crate::ground::{Outside, Ridges, about_plane, unevenness};
 use crate::noise::Correlation;
 use crate::profile::{COUNT, Parameters, light_and_derivative};
 use crate::window::{Field, Round, Window};
 use crate::{Look, SpotError, SpotParams};
+use biplane_grey::Grey;
 
 /// Spots on whose surroundings the noise is measured.
 const NOISE_WINDOWS: usize = 64;
@@ -56,7 +56,7 @@ pub fn find_spots(frame: &Frame, params: &SpotParams) -> Result<Spots, SpotError
     let grey = Grey::of(frame);
     let border = border(&grey);
     let even = border.map_or_else(|| grey.clone(), |circle| mirrored_beyond(&grey, &circle));
-    let finder = Finder { field: Field { grey: &grey, border }, params, noise: grey.noise() };
+    let finder = Finder { field: Field { grey: &grey, border }, params, noise: grey.noise().overall() };
     let mut spots = finder.spots(&even);
     spots.sort_by(|a, b| a.at_px[1].total_cmp(&b.at_px[1]).then(a.at_px[0].total_cmp(&b.at_px[0])));
     let warnings = finder.warnings(&spots, &even);

@@ -8,7 +8,6 @@ mod candidates;
 mod cells;
 mod find;
 mod fit;
-mod grey;
 mod ground;
 mod noise;
 mod profile;

@@ -3,7 +3,7 @@
 use biplane_artifact::Circle;
 
 use crate::fit::Pixel;
-use crate::grey::Grey;
+use biplane_grey::Grey;
 
 /// How far inside the border a picture is whole, px.
 const BORDER_EDGE: f64 = 2.0;
