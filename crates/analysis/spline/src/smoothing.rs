@@ -1,0 +1,344 @@
+//! A spline near points: as smooth as their noise asks for.
+//!
+//! It minimises `sum |y_i - g(t_i)|^2 / sigma_i^2 + lambda * integral |g''|^2` (C. H. Reinsch, Smoothing by spline functions, Numerische
+//! Mathematik 10, 1967; periodic too), solved for the second derivatives at the knots in a time proportional to their number. `lambda` is
+//! chosen from the points by a [`Choice`]. What decides it are the residuals **across** the curve alone: along it a point of an edge has
+//! no error that means anything. The effective degrees of freedom are the trace of the smoother `A`, exact (M. F. Hutchinson and
+//! F. R. de Hoog, 1985), and the standard deviation of a smoothed point is `sigma_i sqrt(A_ii)` (G. Wahba, 1983).
+//!
+//! It is least squares: a point that is far off pulls the curve, unless its standard deviation says so.
+
+use biplane_geometry::{Point2, Vector2};
+
+use crate::band::{Band, Factors};
+use crate::knots::{Knots, PointsError};
+use crate::spline::Roughness;
+use crate::Spline;
+
+/// Points nearer to each other than this share of the mean distance are merged: noise along the curve can bring them together.
+const SAME: f64 = 1e-3;
+/// Powers of two in which the smallest and the first width lie to the mean distance of points. At the smallest the curve goes through them.
+const WIDTHS: [f64; 2] = [-4.0, 2.0];
+/// Steps of the parabola to the minimum of the criterion.
+const REFINEMENTS: usize = 2;
+/// Fewest points whose own differences tell their noise.
+const FEWEST: usize = 16;
+
+/// How the smoothing weight is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Choice {
+    /// Least expected error, by the stated standard deviations (C. L. Mallows, 1973), or where the differences of neighbouring points say
+    /// that they are too small, by those (see [`Smoothed::sigma_factor`]).
+    #[default]
+    Risk,
+    /// The weighted sum of squared residuals is what the stated standard deviations let expect, given the degrees of freedom.
+    Discrepancy,
+    /// Generalised cross-validation (P. Craven and G. Wahba, 1979): the standard deviations need to be right up to a common factor alone.
+    CrossValidation,
+}
+
+/// How points are smoothed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smoothing {
+    /// How the smoothing weight is chosen.
+    pub choice: Choice,
+    /// Number of neighbouring points that share one error, at least 1: the sum of the autocorrelation of the noise over all lags. For edge
+    /// points of a picture that was smoothed by a Gaussian of `s` px it is about `3.5 s` points a pixel apart.
+    pub correlated_points: f64,
+}
+
+impl Default for Smoothing {
+    /// By the risk, for points whose errors are independent.
+    fn default() -> Self {
+        Self { choice: Choice::Risk, correlated_points: 1.0 }
+    }
+}
+
+/// A spline near points, and how near.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smoothed {
+    /// The spline.
+    pub spline: Spline,
+    /// Effective degrees of freedom of each coordinate: 2 of a straight line, the number of points where the curve goes through them.
+    pub freedom: f64,
+    /// Mean square of the residuals across the curve in units of the stated standard deviations, corrected for the degrees of freedom: 1
+    /// where these are right. 0 where nothing is left to tell.
+    pub mean_square: f64,
+    /// By what the stated standard deviations were multiplied: at least 1, by [`Choice::Risk`] more where the differences of
+    /// neighbouring points are larger than stated; by [`Choice::CrossValidation`] the root of `mean_square`.
+    pub sigma_factor: f64,
+    /// Standard deviation of the curve across itself at each given point, px. The bias of smoothing is not in it, but where the weight is
+    /// chosen well the two together are about as large as it says.
+    pub sigmas: Vec<f64>,
+}
+
+impl Spline {
+    /// Near the points, whose standard deviations across the curve are given (px; 0 for a point that the curve goes through).
+    ///
+    /// Neighbours nearer than a thousandth of the mean distance are merged.
+    ///
+    /// # Errors
+    /// If a number is not finite or a standard deviation negative, or fewer than 2 points (3 of a closed curve) differ.
+    pub fn near(points: &[Point2], sigmas: &[f64], closed: bool, how: Smoothing) -> Result<Smoothed, PointsError> {
+        let knots = Knots::new(points, Some(sigmas), closed, SAME)?;
+        let mut positive: Vec<f64> = knots.variances.iter().copied().filter(|v| *v > 0.0).collect();
+        let middle = positive.len() / 2;
+        let unit = if positive.is_empty() { 0.0 } else { *positive.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        if unit <= 0.0 || knots.points.len() < 3 {
+            return through(&knots);
+        }
+        Smoother::new(&knots, unit, how).smooth()
+    }
+}
+
+/// Where nothing is to be smoothed.
+fn through(knots: &Knots) -> Result<Smoothed, PointsError> {
+    let roughness = Roughness::of(knots);
+    let mut factors = Factors::new();
+    factors.factorise(&roughness.energy, 0.0, &roughness.energy).ok_or(PointsError::Unsolvable)?;
+    let mut bends = roughness.differences(&knots.points);
+    factors.solve(&mut bends);
+    Ok(Smoothed {
+        spline: Spline::assemble(knots, &knots.points, &roughness.all(&bends)),
+        freedom: knots.points.len() as f64,
+        mean_square: 0.0,
+        sigma_factor: 1.0,
+        sigmas: knots.knot_of.iter().map(|k| knots.variances[*k].sqrt()).collect(),
+    })
+}
+
+/// The equations of one curve, for any smoothing weight.
+struct Smoother<'a> {
+    knots: &'a Knots,
+    how: Smoothing,
+    /// A variance that is common among the points, px^2.
+    unit: f64,
+    /// Variances in that unit.
+    variances: Vec<f64>,
+    roughness: Roughness<'a>,
+    /// `Q' V Q`.
+    spread: Band,
+    differences: Vec<[f64; 2]>,
+    /// Square of the factor on the stated standard deviations.
+    factor: f64,
+    factors: Factors,
+    /// Second derivatives, and the band of the inverse.
+    bends: Vec<[f64; 2]>,
+    inverse: Vec<[f64; 3]>,
+    fitted: Vec<Point2>,
+    /// `A_ii`.
+    leverage: Vec<f64>,
+}
+
+/// How well one smoothing weight does.
+#[derive(Debug, Clone, Copy)]
+struct Score {
+    /// Weighted squares of the residuals across the curve, in units of the stated variances.
+    squares: f64,
+    /// Trace of the smoother.
+    freedom: f64,
+}
+
+impl<'a> Smoother<'a> {
+    fn new(knots: &'a Knots, unit: f64, how: Smoothing) -> Self {
+        let roughness = Roughness::of(knots);
+        let count = knots.points.len();
+        let variances: Vec<f64> = knots.variances.iter().map(|v| v / unit).collect();
+        let unknowns = if knots.closed { count } else { count - 2 };
+        let mut spread = Band::zeros(unknowns, knots.closed);
+        for (knot, v) in variances.iter().enumerate() {
+            let row = roughness.row(knot);
+            for (a, (i, q)) in row.iter().enumerate() {
+                for (j, r) in &row[a..] {
+                    if let (Some(i), Some(j)) = (i, j) {
+                        spread.add(*i, *j, v * q * r);
+                    }
+                }
+            }
+        }
+        let differences = roughness.differences(&knots.points);
+        let factor = if how.choice == Choice::Risk { noise_factor(knots).max(1.0) } else { 1.0 };
+        Self {
+            knots,
+            how,
+            unit,
+            variances,
+            roughness,
+            spread,
+            differences,
+            factor,
+            factors: Factors::new(),
+            bends: Vec::with_capacity(unknowns),
+            inverse: Vec::with_capacity(unknowns),
+            fitted: Vec::with_capacity(count),
+            leverage: Vec::with_capacity(count),
+        }
+    }
+
+    /// Fits with a weight; `None` where that cannot be solved.
+    fn fit(&mut self, weight: f64) -> Option<Score> {
+        self.factors.factorise(&self.roughness.energy, weight, &self.spread)?;
+        self.bends.clone_from(&self.differences);
+        self.factors.solve(&mut self.bends);
+        self.factors.inverse_band(&mut self.inverse);
+        self.fitted.clear();
+        self.leverage.clear();
+        for (knot, (y, v)) in self.knots.points.iter().zip(&self.variances).enumerate() {
+            let [(i, a), (j, b), (k, c)] = self.roughness.row(knot);
+            let bend = |at: Option<usize>| at.map_or([0.0; 2], |n| self.bends[n]);
+            let (p, q, r) = (bend(i), bend(j), bend(k));
+            let along = weight * v;
+            let residual = Vector2::new(a * p[0] + b * q[0] + c * r[0], a * p[1] + b * q[1] + c * r[1]) * along;
+            self.fitted.push(y - residual);
+            let entry = |at: Option<usize>, k: usize| at.map_or(0.0, |n| self.inverse[n][k]);
+            // An entry of an unknown that is not there has none on either side of it.
+            let pair = |one: Option<usize>, two: Option<usize>, k| if two.is_some() { entry(one, k) } else { 0.0 };
+            let form = a * a * entry(i, 0)
+                + b * b * entry(j, 0)
+                + c * c * entry(k, 0)
+                + 2.0 * (a * b * pair(i, j, 1) + b * c * pair(j, k, 1) + a * c * pair(i, k, 2));
+            self.leverage.push((1.0 - along * form).clamp(0.0, 1.0));
+        }
+        let score = Score { squares: self.squares_across() / self.unit, freedom: self.leverage.iter().sum() };
+        (score.squares.is_finite() && score.freedom.is_finite()).then_some(score)
+    }
+
+    /// Sum of the squares of the residuals across the curve by the variances in their unit, px^2.
+    fn squares_across(&self) -> f64 {
+        let (fitted, count) = (&self.fitted, self.fitted.len());
+        let around = |k: usize, step: usize| if self.knots.closed { (k + step) % count } else { k + step };
+        let one = |k: usize| {
+            let v = self.variances[k];
+            let before = if k == 0 && !self.knots.closed { 0 } else { around(k, count - 1) % count };
+            let after = around(k, 1).min(count - 1);
+            let along = fitted[after] - fitted[before];
+            let off = self.knots.points[k] - fitted[k];
+            let (square, across) = (along.norm_squared(), along.perp(&off));
+            if v > 0.0 && square > 0.0 { across * across / (square * v) } else { 0.0 }
+        };
+        (0..count).map(one).sum()
+    }
+
+    /// What is to be least.
+    fn criterion(&self, score: Score) -> f64 {
+        let count = self.knots.points.len() as f64;
+        let shared = if self.how.correlated_points.is_finite() { self.how.correlated_points.max(1.0) } else { 1.0 };
+        let left = (count - shared * score.freedom).max(0.0);
+        match self.how.choice {
+            Choice::Risk => score.squares + 2.0 * shared * self.factor * score.freedom,
+            Choice::Discrepancy => (score.squares / left).ln().powi(2),
+            Choice::CrossValidation => score.squares / (left * left),
+        }
+    }
+
+    fn smooth(mut self) -> Result<Smoothed, PointsError> {
+        let count = self.knots.points.len() as f64;
+        let length: f64 = self.knots.chords.iter().sum();
+        let spacing = length / self.knots.chords.len() as f64;
+        // Points a distance h apart and a weight w are smoothed over a width of (w h)^(1/4).
+        let weight = |x: f64| (spacing * x.exp2()).powi(4) / spacing;
+        let limits = [WIDTHS[0], (2.0 * count).log2().max(WIDTHS[1] + 1.0)];
+        let x = least(limits, WIDTHS[1], |x| {
+            let score = self.fit(weight(x));
+            score.map_or(f64::INFINITY, |s| self.criterion(s))
+        });
+        let score = self.fit(weight(x)).ok_or(PointsError::Unsolvable)?;
+        let left = count - score.freedom;
+        let mean_square = if left > 1e-6 * count { score.squares / left } else { 0.0 };
+        let variance = if self.how.choice == Choice::CrossValidation { mean_square } else { self.factor };
+        let shared = self.how.correlated_points.max(1.0);
+        let sigma = |k: &usize| {
+            let share = (self.leverage[*k] * shared).min(1.0);
+            (self.knots.variances[*k] * share * variance).sqrt()
+        };
+        Ok(Smoothed {
+            spline: Spline::assemble(self.knots, &self.fitted, &self.roughness.all(&self.bends)),
+            freedom: score.freedom,
+            mean_square,
+            sigma_factor: variance.sqrt(),
+            sigmas: self.knots.knot_of.iter().map(sigma).collect(),
+        })
+    }
+}
+
+/// Square of the factor by which points scatter across the curve more than stated: from the cubic through four neighbours, whose third
+/// difference is noise alone where the curve is smooth. The median over all of them, so corners and stray points count for little. Noise
+/// that neighbours share is hardly in it.
+fn noise_factor(knots: &Knots) -> f64 {
+    let count = knots.points.len();
+    if count < FEWEST {
+        return 1.0;
+    }
+    let windows = if knots.closed { count } else { count - 3 };
+    let mut sizes = Vec::with_capacity(windows);
+    for first in 0..windows {
+        let index: [usize; 4] = std::array::from_fn(|k| (first + k) % count);
+        let mut at = [0.0; 4];
+        for k in 1..4 {
+            at[k] = at[k - 1] + knots.chords[index[k - 1]];
+        }
+        let (mut sum, mut variance) = (Vector2::zeros(), 0.0);
+        for j in 0..4 {
+            let others = (0..4).filter(|k| *k != j).map(|k| at[j] - at[k]);
+            let c = 1.0 / others.product::<f64>();
+            sum += (knots.points[index[j]] - knots.points[index[0]]) * c;
+            variance += c * c * knots.variances[index[j]];
+        }
+        let along = knots.points[index[3]] - knots.points[index[0]];
+        let (square, across) = (along.norm_squared(), along.perp(&sum));
+        if variance > 0.0 && square > 0.0 {
+            sizes.push(across * across / (square * variance));
+        }
+    }
+    if sizes.len() < FEWEST {
+        return 1.0;
+    }
+    let middle = sizes.len() / 2;
+    // The median of the square of a standard normal number.
+    let factor = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.4549;
+    if factor.is_finite() { factor } else { 1.0 }
+}
+
+/// Where a function is least within limits: downhill from a start in steps of 1, then along parabolas.
+fn least(limits: [f64; 2], start: f64, mut of: impl FnMut(f64) -> f64) -> f64 {
+    let mut here = (start, of(start));
+    let mut after = (start + 1.0, of(start + 1.0));
+    let mut before = (start - 1.0, f64::INFINITY);
+    if after.1 < here.1 {
+        while after.1 < here.1 && after.0 + 1.0 <= limits[1] {
+            (before, here) = (here, after);
+            let next = here.0 + 1.0;
+            after = (next, of(next));
+        }
+    } else {
+        before.1 = of(before.0);
+        while before.1 < here.1 && before.0 - 1.0 >= limits[0] {
+            (after, here) = (here, before);
+            let next = here.0 - 1.0;
+            before = (next, of(next));
+        }
+    }
+    // At a limit.
+    if let Some(end) = [before, after].into_iter().find(|e| e.1 < here.1) {
+        return end.0;
+    }
+    for _ in 0..REFINEMENTS {
+        let (left, right) = (here.0 - before.0, after.0 - here.0);
+        let (fall, rise) = ((here.1 - before.1) / left, (after.1 - here.1) / right);
+        let vertex = 0.5 * (before.0 + here.0) - 0.5 * fall * (left + right) / (rise - fall);
+        // Neither flat nor next to what is known.
+        if !(vertex > before.0 && vertex < after.0) || (vertex - here.0).abs() < 0.01 {
+            break;
+        }
+        let new = (vertex, of(vertex));
+        if new.1 < here.1 {
+            (before, after) = if new.0 < here.0 { (before, here) } else { (here, after) };
+            here = new;
+        } else if new.0 < here.0 {
+            before = new;
+        } else {
+            after = new;
+        }
+    }
+    here.0
+}
