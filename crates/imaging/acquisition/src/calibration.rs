@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 use biplane_artifact::{Calibration, PixelOrigin};
 
-pub(crate) use columns::{Lengths, Table, fields, lines};
+pub(crate) use columns::{Lengths, Row, Table, fields, lines};
 pub(crate) use distortion::is_distortion_csv;
 pub use distortion::{read_distortion_csv, write_distortion_csv};
 pub use four_points::write_four_points;

@@ -8,6 +8,7 @@
 
 pub mod beads;
 pub mod calibration;
+pub mod edits;
 pub mod frames;
 pub mod images;
 pub mod inspect;
