@@ -35,7 +35,9 @@ impl Cubic {
 
     fn rule(&self, from: f64, to: f64) -> f64 {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let pair = |[x, w]: &[f64; 2]| w * (self.slope(middle - half * x).norm() + self.slope(middle + half * x).norm());
+        let pair = |[x, w]: &[f64; 2]| {
+            w * (self.slope(middle - half * x).norm() + self.slope(middle + half * x).norm())
+        };
         half * RULE.iter().map(pair).sum::<f64>()
     }
 
@@ -88,7 +90,11 @@ impl<'a> ArcLength<'a> {
         let mut s = if all > 0.0 { ((wanted - begin) / all).clamp(0.0, 1.0) } else { 0.0 };
         for _ in 0..100 {
             let off = cubic.length(0.0, s) - (wanted - begin);
-            if off > 0.0 { high = s } else { low = s }
+            if off > 0.0 {
+                high = s
+            } else {
+                low = s
+            }
             let next = s - off / cubic.slope(s).norm();
             let inside = next >= low && next <= high;
             let next = if inside { next } else { 0.5 * (low + high) };

@@ -189,7 +189,8 @@ mod tests {
         // A sum of squares of three neighbouring unknowns each.
         for k in 0..size {
             let near = [(k + size - 1) % size, k, (k + 1) % size];
-            let mut q: Vec<(usize, f64)> = near.into_iter().map(|j| (j, random.random_range(-1.0..1.0))).collect();
+            let mut q: Vec<(usize, f64)> =
+                near.into_iter().map(|j| (j, random.random_range(-1.0..1.0))).collect();
             if !cyclic {
                 q.retain(|(j, _)| j.abs_diff(k) <= 1);
                 q.dedup_by_key(|(j, _)| *j);
@@ -211,9 +212,17 @@ mod tests {
 
     #[test]
     fn solution_and_inverse_are_those_of_the_full_matrix() {
-        for (size, cyclic) in
-            [(1, false), (2, false), (3, false), (9, false), (3, true), (4, true), (5, true), (6, true), (12, true)]
-        {
+        for (size, cyclic) in [
+            (1, false),
+            (2, false),
+            (3, false),
+            (9, false),
+            (3, true),
+            (4, true),
+            (5, true),
+            (6, true),
+            (12, true),
+        ] {
             let (first, full_first) = random(size, cyclic, 7);
             let (second, full_second) = random(size, cyclic, 8);
             let full = full_first + full_second * 3.0;

@@ -32,7 +32,9 @@ pub struct BezierFit {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FlattenError {
     /// A coordinate that no point can have.
-    #[error("curve {index} (from 0) has a control point at ({x}, {y}), but coordinates must be finite and at most 1e9 in size")]
+    #[error(
+        "curve {index} (from 0) has a control point at ({x}, {y}), but coordinates must be finite and at most 1e9 in size"
+    )]
     NotAPlace {
         /// Number of the curve.
         index: usize,
@@ -50,7 +52,9 @@ pub enum FlattenError {
         tolerance: f64,
     },
     /// More points than anything real has.
-    #[error("curve {index} (from 0) brings the chain to more than {most} points at most {step} px apart: is it drawn in the right unit?")]
+    #[error(
+        "curve {index} (from 0) brings the chain to more than {most} points at most {step} px apart: is it drawn in the right unit?"
+    )]
     TooLong {
         /// Number of the curve.
         index: usize,
@@ -99,7 +103,9 @@ impl BezierFit {
         }
         let length = lengths[arcs.len()] - lengths[0];
         let parts = (length / longest).ceil();
-        if parts <= 1.0 && let Some((curve, error)) = one_for(arcs, length, tolerance) {
+        if parts <= 1.0
+            && let Some((curve, error)) = one_for(arcs, length, tolerance)
+        {
             self.curves.push(curve);
             self.error = self.error.max(error);
             return;
@@ -127,7 +133,8 @@ fn one_for(arcs: &[Cubic], length: f64, tolerance: f64) -> Option<(Bezier, f64)>
     for step in 0.. {
         let curve = [start, start + out * handles[0], end + back * handles[1], end];
         let cubic = Cubic::from_controls(&curve);
-        let (mut normal, mut right, mut error) = (Matrix2::identity() * (1e-6 * places), Vector2::zeros(), 0.0_f64);
+        let (mut normal, mut right, mut error) =
+            (Matrix2::identity() * (1e-6 * places), Vector2::zeros(), 0.0_f64);
         for k in 1..places as u32 {
             let s = f64::from(k) / places;
             let at = Point2::from(cubic.at(s));
@@ -155,7 +162,12 @@ fn one_for(arcs: &[Cubic], length: f64, tolerance: f64) -> Option<(Bezier, f64)>
 ///
 /// # Errors
 /// If a coordinate is not finite, a limit not above 0, or the chain too long for the step.
-pub fn flatten(curves: &[Bezier], step: f64, tolerance: f64, closed: bool) -> Result<Vec<Point2>, FlattenError> {
+pub fn flatten(
+    curves: &[Bezier],
+    step: f64,
+    tolerance: f64,
+    closed: bool,
+) -> Result<Vec<Point2>, FlattenError> {
     // Not a number is not above 0 either.
     if !(step > 0.0 && tolerance > 0.0) {
         return Err(FlattenError::Limits { step, tolerance });

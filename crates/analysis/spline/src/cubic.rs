@@ -68,8 +68,7 @@ impl Cubic {
         let derivative = off.derivative_of_square();
         match sign_changes(&derivative) {
             0 => {}
-            1 if derivative[5] > 0.0 => off.take(off.root(&derivative, 0.0, 1.0), &mut best),
-            1 => {}
+            1 => off.take_root(&derivative, 0.0, 1.0, &mut best),
             _ => off.isolate(&derivative, 0.0, 1.0, DEEPEST, &mut best),
         }
         best
@@ -104,8 +103,7 @@ impl Cubic {
     fn isolate(&self, derivative: &[f64; 6], from: f64, to: f64, depth: u32, best: &mut (f64, f64)) {
         match sign_changes(derivative) {
             0 => {}
-            1 if derivative[5] < 0.0 => {}
-            1 => self.take(self.root(derivative, from, to), best),
+            1 => self.take_root(derivative, from, to, best),
             _ if depth == 0 => self.take(0.5 * (from + to), best),
             _ => {
                 let middle = 0.5 * (from + to);
@@ -117,12 +115,19 @@ impl Cubic {
         }
     }
 
-    /// The one root of `P . P'` between `low` and `high`, where it goes from negative to positive: Newton, halving where that leaves the
-    /// bracket.
-    fn root(&self, derivative: &[f64; 6], mut low: f64, mut high: f64) -> f64 {
-        let (f0, f1) = (derivative[0].min(0.0), derivative[5].max(0.0));
-        let span = f1 - f0;
-        let mut s = if span > 0.0 { low - (high - low) * f0 / span } else { 0.5 * (low + high) };
+    /// Takes the one root of `P . P'` between `low` and `high` if it is a minimum: Newton, halving where that leaves the bracket.
+    fn take_root(&self, derivative: &[f64; 6], low: f64, high: f64, best: &mut (f64, f64)) {
+        // An end may be another root, of a maximum: the sign next to it decides.
+        if derivative.iter().find(|v| **v != 0.0).is_some_and(|v| *v < 0.0) {
+            let share = derivative[0] / (derivative[0] - derivative[5]);
+            // Not from an end itself, for the same reason.
+            let share = if (0.01..=0.99).contains(&share) { share } else { 0.5 };
+            self.take(self.root(low, high, low + (high - low) * share), best);
+        }
+    }
+
+    /// Where `P . P'` goes from negative to positive between `low` and `high`.
+    fn root(&self, mut low: f64, mut high: f64, mut s: f64) -> f64 {
         for _ in 0..100 {
             let (p, v) = (self.at(s), self.slope(s));
             let f = p.dot(&v);
@@ -204,7 +209,8 @@ mod tests {
 
     #[test]
     fn a_line_run_through_twice_and_a_place_on_it_are_no_trouble() {
-        let there_and_back = Cubic([Vector2::zeros(), Vector2::new(4.0, 0.0), Vector2::new(-4.0, 0.0), Vector2::zeros()]);
+        let there_and_back =
+            Cubic([Vector2::zeros(), Vector2::new(4.0, 0.0), Vector2::new(-4.0, 0.0), Vector2::zeros()]);
         let (_, square) = there_and_back.nearest(&Point2::new(0.5, 2.0));
         assert!((square - 4.0).abs() < 1e-14);
         let (s, square) = there_and_back.nearest(&Point2::new(3.0, 0.0));

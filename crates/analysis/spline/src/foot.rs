@@ -164,7 +164,10 @@ impl FootFinder {
         let middle = from + (to - from).div_ceil(2);
         let first = self.build(from, middle);
         let second = self.build(middle, to);
-        let (low, high) = (self.nodes[first].low.inf(&self.nodes[second].low), self.nodes[first].high.sup(&self.nodes[second].high));
+        let (low, high) = (
+            self.nodes[first].low.inf(&self.nodes[second].low),
+            self.nodes[first].high.sup(&self.nodes[second].high),
+        );
         self.nodes[here] = Node { low, high, link: second as u32, arcs: 0 };
         here
     }
@@ -226,7 +229,8 @@ impl FootFinder {
                 let (first, second) = (at + 1, node.link);
                 let one = self.nodes[first as usize].distance_squared(place);
                 let two = self.nodes[second as usize].distance_squared(place);
-                let (near, far) = if two < one { ((second, two), (first, one)) } else { ((first, one), (second, two)) };
+                let (near, far) =
+                    if two < one { ((second, two), (first, one)) } else { ((first, one), (second, two)) };
                 let most = best.distance * best.distance;
                 if far.1 < most && height < DEEPEST {
                     stack[height] = far;

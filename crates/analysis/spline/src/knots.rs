@@ -23,7 +23,9 @@ pub enum PointsError {
         closed: bool,
     },
     /// A coordinate that no point can have.
-    #[error("point {index} (from 0) is at ({x}, {y}), but coordinates must be finite and at most 1e9 in size")]
+    #[error(
+        "point {index} (from 0) is at ({x}, {y}), but coordinates must be finite and at most 1e9 in size"
+    )]
     NotAPlace {
         /// Number of the point, from 0.
         index: usize,
@@ -70,7 +72,12 @@ pub(crate) struct Knots {
 
 impl Knots {
     /// Checks and merges: points nearer to the one before than `merge` times the mean distance become one, at their weighted mean.
-    pub fn new(points: &[Point2], sigmas: Option<&[f64]>, closed: bool, merge: f64) -> Result<Self, PointsError> {
+    pub fn new(
+        points: &[Point2],
+        sigmas: Option<&[f64]>,
+        closed: bool,
+        merge: f64,
+    ) -> Result<Self, PointsError> {
         let is_size = |v: f64| v.is_finite() && v.abs() <= LARGEST;
         if let Some(index) = points.iter().position(|p| !is_size(p.x) || !is_size(p.y)) {
             return Err(PointsError::NotAPlace { index, x: points[index].x, y: points[index].y });

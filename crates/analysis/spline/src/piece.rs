@@ -32,7 +32,9 @@ pub enum PieceError {
         closed: bool,
     },
     /// The spline was not made from that many points.
-    #[error("the trusted part is to run from point {first} to point {last} (from 0), but the spline has {count} points")]
+    #[error(
+        "the trusted part is to run from point {first} to point {last} (from 0), but the spline has {count} points"
+    )]
     NoSuchPoint {
         /// Its first point.
         first: usize,
@@ -107,7 +109,11 @@ impl Piece {
             let begin = begin + if k >= count { end } else { 0.0 };
             let (from, to) = ((self.from - begin) / length, (self.to - begin) / length);
             let open = spline.is_closed() || k < count;
-            (open && (k == first || to > 0.0)).then_some((k % count, from.clamp(0.0, 1.0), to.clamp(0.0, 1.0)))
+            (open && (k == first || to > 0.0)).then_some((
+                k % count,
+                from.clamp(0.0, 1.0),
+                to.clamp(0.0, 1.0),
+            ))
         })
     }
 }

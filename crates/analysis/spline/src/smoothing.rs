@@ -10,10 +10,10 @@
 
 use biplane_geometry::{Point2, Vector2};
 
+use crate::Spline;
 use crate::band::{Band, Factors};
 use crate::knots::{Knots, PointsError};
 use crate::spline::Roughness;
-use crate::Spline;
 
 /// Points nearer to each other than this share of the mean distance are merged: noise along the curve can bring them together.
 const SAME: f64 = 1e-3;
@@ -79,11 +79,20 @@ impl Spline {
     ///
     /// # Errors
     /// If a number is not finite or a standard deviation negative, or fewer than 2 points (3 of a closed curve) differ.
-    pub fn near(points: &[Point2], sigmas: &[f64], closed: bool, how: Smoothing) -> Result<Smoothed, PointsError> {
+    pub fn near(
+        points: &[Point2],
+        sigmas: &[f64],
+        closed: bool,
+        how: Smoothing,
+    ) -> Result<Smoothed, PointsError> {
         let knots = Knots::new(points, Some(sigmas), closed, SAME)?;
         let mut positive: Vec<f64> = knots.variances.iter().copied().filter(|v| *v > 0.0).collect();
         let middle = positive.len() / 2;
-        let unit = if positive.is_empty() { 0.0 } else { *positive.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let unit = if positive.is_empty() {
+            0.0
+        } else {
+            *positive.select_nth_unstable_by(middle, f64::total_cmp).1
+        };
         if unit <= 0.0 || knots.points.len() < 3 {
             return through(&knots);
         }
@@ -188,11 +197,13 @@ impl<'a> Smoother<'a> {
             let bend = |at: Option<usize>| at.map_or([0.0; 2], |n| self.bends[n]);
             let (p, q, r) = (bend(i), bend(j), bend(k));
             let along = weight * v;
-            let residual = Vector2::new(a * p[0] + b * q[0] + c * r[0], a * p[1] + b * q[1] + c * r[1]) * along;
+            let residual =
+                Vector2::new(a * p[0] + b * q[0] + c * r[0], a * p[1] + b * q[1] + c * r[1]) * along;
             self.fitted.push(y - residual);
             let entry = |at: Option<usize>, k: usize| at.map_or(0.0, |n| self.inverse[n][k]);
             // An entry of an unknown that is not there has none on either side of it.
-            let pair = |one: Option<usize>, two: Option<usize>, k| if two.is_some() { entry(one, k) } else { 0.0 };
+            let pair =
+                |one: Option<usize>, two: Option<usize>, k| if two.is_some() { entry(one, k) } else { 0.0 };
             let form = a * a * entry(i, 0)
                 + b * b * entry(j, 0)
                 + c * c * entry(k, 0)
@@ -222,7 +233,8 @@ impl<'a> Smoother<'a> {
     /// What is to be least.
     fn criterion(&self, score: Score) -> f64 {
         let count = self.knots.points.len() as f64;
-        let shared = if self.how.correlated_points.is_finite() { self.how.correlated_points.max(1.0) } else { 1.0 };
+        let shared =
+            if self.how.correlated_points.is_finite() { self.how.correlated_points.max(1.0) } else { 1.0 };
         let left = (count - shared * score.freedom).max(0.0);
         match self.how.choice {
             Choice::Risk => score.squares + 2.0 * shared * self.factor * score.freedom,

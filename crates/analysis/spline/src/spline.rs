@@ -190,7 +190,8 @@ impl<'a> Roughness<'a> {
         let (count, chords) = (self.knots.points.len(), &self.knots.chords);
         let before = if knot > 0 { Some(knot - 1) } else { self.knots.closed.then_some(count - 1) };
         let after = (self.knots.closed || knot + 1 < count).then_some((knot + 1) % count);
-        let (left, right) = (before.map_or(0.0, |b| 1.0 / chords[b]), after.map_or(0.0, |_| 1.0 / chords[knot]));
+        let (left, right) =
+            (before.map_or(0.0, |b| 1.0 / chords[b]), after.map_or(0.0, |_| 1.0 / chords[knot]));
         [
             (before.and_then(|b| self.unknown(b)), left),
             (self.unknown(knot), -(left + right)),

@@ -1,6 +1,9 @@
 //! What a spline must be, on seeded random curves: smooth over its knots and its seam, the same wherever it lies, and with the right
 //! closest points.
 
+// Clippy lets `#[test]` functions unwrap, but not what they call.
+#![allow(clippy::unwrap_used)]
+
 use biplane_geometry::{Point2, Vector2};
 use biplane_spline::{ArcLength, Foot, FootFinder, Piece, PieceError, PointsError, Smoothing, Spline};
 use nalgebra::Rotation2;
@@ -19,7 +22,10 @@ fn wobbly(count: usize, radius: f64, noise: f64, random: &mut Xoshiro256PlusPlus
             let a = std::f64::consts::TAU * i as f64 / count as f64;
             let wave = |(k, [size, phase]): (usize, &[f64; 2])| size * ((k + 2) as f64 * a + phase).sin();
             let r = radius * (1.0 + 0.5 * waves.iter().enumerate().map(wave).sum::<f64>());
-            Point2::new(200.0 + r * a.cos() + noise.sample(random), 300.0 + 0.7 * r * a.sin() + noise.sample(random))
+            Point2::new(
+                200.0 + r * a.cos() + noise.sample(random),
+                300.0 + 0.7 * r * a.sin() + noise.sample(random),
+            )
         })
         .collect()
 }
@@ -62,7 +68,8 @@ fn a_spline_goes_through_its_points() {
 fn two_derivatives_are_the_same_on_both_sides_of_knots_and_seam() {
     for spline in splines(2) {
         let end = spline.end();
-        let knots = spline.parameters().iter().copied().filter(|t| spline.is_closed() || (*t > 0.0 && *t < end));
+        let knots =
+            spline.parameters().iter().copied().filter(|t| spline.is_closed() || (*t > 0.0 && *t < end));
         for t in knots {
             let (before, after) = (t - 1e-9, t + 1e-9);
             // Over 2e-9 px a curve whose second derivative stays below 1e3 changes by less than this.
@@ -75,10 +82,14 @@ fn two_derivatives_are_the_same_on_both_sides_of_knots_and_seam() {
             for t in [0.0, 0.3, 17.0] {
                 assert!((spline.point(t) - spline.point(t + end)).norm() < 1e-9);
                 assert!((spline.derivative(t) - spline.derivative(t - end)).norm() < 1e-9);
-                assert!((spline.second_derivative(t) - spline.second_derivative(t + 2.0 * end)).norm() < 1e-8);
+                assert!(
+                    (spline.second_derivative(t) - spline.second_derivative(t + 2.0 * end)).norm() < 1e-8
+                );
             }
         } else {
-            assert!(spline.second_derivative(0.0).norm() < 1e-9 && spline.second_derivative(end).norm() < 1e-9);
+            assert!(
+                spline.second_derivative(0.0).norm() < 1e-9 && spline.second_derivative(end).norm() < 1e-9
+            );
             assert_eq!(spline.point(-5.0), spline.point(0.0));
             assert_eq!(spline.point(end + 5.0), spline.point(end));
         }
@@ -179,7 +190,8 @@ fn brute_force(piece: &Piece, place: &Point2) -> f64 {
     let least = sampled.iter().copied().fold(f64::INFINITY, f64::min);
     let mut best = least;
     for (k, d) in sampled.iter().enumerate().filter(|(_, d)| **d < least + 2.0 * step) {
-        let (mut low, mut high) = (from + step * k.saturating_sub(1) as f64, (from + step * (k + 1) as f64).min(to));
+        let (mut low, mut high) =
+            (from + step * k.saturating_sub(1) as f64, (from + step * (k + 1) as f64).min(to));
         for _ in 0..60 {
             let third = (high - low) / 3.0;
             if distance(low + third) < distance(high - third) { high -= third } else { low += third }
@@ -212,7 +224,11 @@ fn the_closest_point_is_that_of_brute_force() {
                 let foot = finder.closest(&place).unwrap();
                 let expected = brute_force(&piece, &place);
                 assert!(foot.distance <= expected + 1e-9, "{} {expected}", foot.distance);
-                assert!((foot.distance - expected).abs() < 1e-9 * (1.0 + expected), "{} {expected}", foot.distance);
+                assert!(
+                    (foot.distance - expected).abs() < 1e-9 * (1.0 + expected),
+                    "{} {expected}",
+                    foot.distance
+                );
                 assert!((foot.distance - (foot.point - place).norm()).abs() < 1e-12);
                 assert!((spline.point(foot.t) - foot.point).norm() < 1e-9);
                 let [from, to] = piece.trusted();
@@ -326,7 +342,9 @@ fn no_input_makes_it_panic_or_leave_the_picture() {
             })
             .collect();
         let sigmas: Vec<f64> = (0..count)
-            .map(|_| if random.random_bool(0.2) { 0.0 } else { 10.0_f64.powf(random.random_range(-9.0..6.0)) })
+            .map(
+                |_| if random.random_bool(0.2) { 0.0 } else { 10.0_f64.powf(random.random_range(-9.0..6.0)) },
+            )
             .collect();
         let closed = round % 2 == 0;
         let Ok(smoothed) = Spline::near(&points, &sigmas, closed, Smoothing::default()) else { continue };
