@@ -101,7 +101,7 @@ pub fn list_frames(base: impl AsRef<Path>, named: &str) -> Result<Vec<FrameSourc
     of_files(&images)
 }
 
-fn files_of_folder(folder: &Path) -> Result<Vec<PathBuf>, FramesError> {
+pub(crate) fn files_of_folder(folder: &Path) -> Result<Vec<PathBuf>, FramesError> {
     let io = |source| FramesError::Io { path: folder.to_owned(), source };
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(io)? {
@@ -214,7 +214,7 @@ fn last_digits(path: &Path) -> Option<String> {
 }
 
 /// Compares texts with runs of digits as numbers; equal numbers with different zeros go by the text.
-fn natural(a: &str, b: &str) -> Ordering {
+pub(crate) fn natural(a: &str, b: &str) -> Ordering {
     let (mut x, mut y) = (a, b);
     loop {
         let (Some(p), Some(q)) = (x.chars().next(), y.chars().next()) else {

@@ -8,7 +8,7 @@
 //! 12-bit pictures stored in 16 bits are given as 16 bits, unless the TIFF tag `MaxSampleValue` or DICOM's `BitsStored`
 //! says how many are used.
 
-mod dicom;
+pub(crate) mod dicom;
 mod raster;
 mod tiff_pages;
 

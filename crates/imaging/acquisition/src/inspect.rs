@@ -2,6 +2,8 @@
 //!
 //! The kind is told by content. Nothing of a DICOM header but what describes the pixels is shown.
 
+mod volume;
+
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,7 @@ use crate::frames::{FramesError, list_frames};
 use crate::images::{ImageError, ImageFile, ImageFormat, ImageInfo};
 use crate::meshes::{LengthUnit, MeshFile, MeshFileError, check_size, is_stl, read_unscaled};
 use crate::plates::{is_plate_list, read_plate_list};
+use crate::volumes::{VolumeFileError, VolumeFormat, is_series, read_volume};
 
 /// What a file holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,7 +67,8 @@ pub enum InspectError {
     /// None of the kinds known.
     #[error(
         "{} is none of the files this program reads: images (PNG, TIFF, DICOM, JPEG, BMP), calibrations (MayaCam, \
-         JointTrack, source and plane as JSON, four points, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL)", path.display()
+         JointTrack, source and plane as JSON, four points, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL), volumes \
+         (NRRD, NIfTI-1, a folder of DICOM slices)", path.display()
     )]
     Unknown {
         /// The file.
@@ -82,9 +86,12 @@ pub enum InspectError {
     /// A mesh that cannot be read.
     #[error(transparent)]
     Mesh(#[from] MeshFileError),
+    /// A volume that cannot be read.
+    #[error(transparent)]
+    Volume(#[from] VolumeFileError),
 }
 
-/// Describes a file, or a folder of images.
+/// Describes a file, a folder of images, or one of a volume's slices.
 ///
 /// # Errors
 /// The file cannot be read, is of no known kind, or is damaged.
@@ -92,7 +99,7 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
     let path = path.as_ref();
     let io = |source| InspectError::Io { path: path.to_owned(), source };
     if path.is_dir() {
-        return folder(path);
+        return if is_series(path) { Ok(volume::describe(&read_volume(path)?)) } else { folder(path) };
     }
     let mut file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();
@@ -101,6 +108,9 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
     drop(file);
     if ImageFormat::of_start(&start).is_some() {
         return image(path);
+    }
+    if VolumeFormat::of_start(&start).is_some() {
+        return Ok(volume::describe(&read_volume(path)?));
     }
     if is_stl(&start, length) {
         return mesh(path);

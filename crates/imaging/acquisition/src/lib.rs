@@ -1,4 +1,4 @@
-//! Reads what a laboratory has - images, calibrations, meshes - and pairs the frames of its views.
+//! Reads what a laboratory has - images, calibrations, meshes, volumes - and pairs the frames of its views.
 //!
 //! Everything is told apart by what a file holds, not by its name. What comes out are the artifacts of
 //! `biplane-artifact`: frames in which larger is brighter, calibrations whose pixels have the centre of the first one at
@@ -15,3 +15,4 @@ pub mod inspect;
 pub mod meshes;
 mod places;
 pub mod plates;
+pub mod volumes;

@@ -12,6 +12,7 @@
 //! **Times** come from `FrameTimeVector`, else `FrameTime`, else `CineRate`, else `RecommendedDisplayFrameRate`.
 
 mod data_set;
+pub(crate) mod slice;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -157,10 +158,17 @@ fn times(data: &DataSet, frames: usize) -> (Option<f64>, Vec<f64>) {
 
 impl Frames {
     pub(super) fn read(&self, path: &Path, index: usize) -> Result<Frame, ImageError> {
+        let Layout { width, height, stored, .. } = self.layout;
+        let samples = self.stored(path, index)?.into_iter().map(|s| self.layout.level(s)).collect();
+        Ok(Frame { width, height, samples, bits: stored })
+    }
+
+    /// The samples of a frame with all of their bits.
+    fn stored(&self, path: &Path, index: usize) -> Result<Vec<u16>, ImageError> {
         let place = Place { path, index };
-        let Layout { width, height, allocated, stored, .. } = self.layout;
+        let Layout { width, height, allocated, .. } = self.layout;
         let mut file = File::open(path).map_err(|e| place.io(e))?;
-        let raw = match &self.data.pixels {
+        let mut raw: Vec<u16> = match &self.data.pixels {
             Pixels::Missing => return Err(place.truncated(self.length)),
             Pixels::Native { offset, length, words } => {
                 let size = width * height * if allocated == 8 { 1 } else { 2 };
@@ -192,8 +200,8 @@ impl Frames {
         if raw.len() < width * height {
             return Err(place.truncated(self.length));
         }
-        let samples = raw.iter().take(width * height).map(|&s: &u16| self.layout.level(s)).collect();
-        Ok(Frame { width, height, samples, bits: stored })
+        raw.truncate(width * height);
+        Ok(raw)
     }
 
     /// Bytes of the file; that they are there was checked when it was walked.

@@ -1,5 +1,5 @@
 //! A walk over a DICOM file (part 10 of the standard; the data set's encoding is part 5) that takes up what describes the
-//! pixels, and steps over everything else without looking into it.
+//! pixels and where they are in the patient, and steps over everything else without looking into it.
 //!
 //! An own reader, since the crates' one keeps every element in memory, takes memory for the length that an element
 //! claims before it looks whether the file is as long, and calls itself for every sequence within a sequence. This one
@@ -15,7 +15,7 @@ use dicom_object::Tag;
 use super::{ADVICE, ImageError, Place};
 
 /// The elements that are taken up.
-const KEPT: [Tag; 14] = [
+const KEPT: [Tag; 20] = [
     tags::SAMPLES_PER_PIXEL,
     tags::PHOTOMETRIC_INTERPRETATION,
     tags::NUMBER_OF_FRAMES,
@@ -30,6 +30,13 @@ const KEPT: [Tag; 14] = [
     tags::FRAME_TIME_VECTOR,
     tags::CINE_RATE,
     tags::RECOMMENDED_DISPLAY_FRAME_RATE,
+    tags::RESCALE_INTERCEPT,
+    tags::PIXEL_SPACING,
+    tags::IMAGE_POSITION_PATIENT,
+    tags::IMAGE_ORIENTATION_PATIENT,
+    tags::ECHO_NUMBERS,
+    // Compared, never shown.
+    tags::SERIES_INSTANCE_UID,
 ];
 /// Bytes such an element may have: the times of a million frames.
 const MAX_VALUE: u64 = 16 << 20;
@@ -68,6 +75,11 @@ impl DataSet {
         let bytes = self.kept.get(&tag)?.get(..2)?;
         let bytes = [bytes[0], bytes[1]];
         Some(if self.big_endian { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) }.into())
+    }
+
+    /// Whether an element is there.
+    pub(super) fn has(&self, tag: Tag) -> bool {
+        self.kept.contains_key(&tag)
     }
 
     /// An element of numbers written as text.
