@@ -9,9 +9,9 @@ use crate::cubic::Cubic;
 use crate::{Piece, Spline};
 
 /// Cubics of a leaf of the tree.
-const LEAF: usize = 4;
-/// Deeper than any tree of `u32` leaves.
-const DEEPEST: usize = 64;
+const LEAF: usize = 8;
+/// Deeper than any tree whose nodes a `u32` counts.
+const DEEPEST: usize = 32;
 
 /// The point of a curve that is closest to a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,8 +24,6 @@ pub struct Foot {
     pub point: Point2,
     /// Its distance from the place, px.
     pub distance: f64,
-    /// Number of the arc it is on.
-    arc: usize,
 }
 
 /// A cubic, or a part of one.
@@ -73,9 +71,9 @@ impl Chord {
         Self { from, along, share, bulge }
     }
 
-    fn distance_squared(&self, place: &Point2) -> f64 {
+    fn distance(&self, place: &Point2) -> f64 {
         let off = place - self.from;
-        (off - self.along * off.dot(&self.share).clamp(0.0, 1.0)).norm_squared()
+        (off - self.along * off.dot(&self.share).clamp(0.0, 1.0)).norm()
     }
 }
 
@@ -99,6 +97,8 @@ pub struct FootFinder {
 #[derive(Debug, Clone, Copy)]
 struct Best {
     distance: f64,
+    /// There is a point at most this far, px, if one is to be found at all.
+    bound: f64,
     arc: usize,
     s: f64,
 }
@@ -179,26 +179,7 @@ impl FootFinder {
 
     /// The closest point if it is nearer than `reach`, px: the quicker the smaller that is.
     pub fn closest_within(&self, place: &Point2, reach: f64) -> Option<Foot> {
-        self.search(place, Best { distance: reach, arc: usize::MAX, s: 0.0 })
-    }
-
-    /// The closest point, the same as [`FootFinder::closest`] gives except among those that are equally near: quicker where `before`, the
-    /// foot of a place near this one, is near it too. What it is decides nothing else, a foot of other pieces included.
-    pub fn closest_from(&self, place: &Point2, before: &Foot) -> Option<Foot> {
-        let mut best = Best { distance: f64::INFINITY, arc: usize::MAX, s: 0.0 };
-        if before.arc < self.arcs.len() {
-            self.look(before.arc, place, &mut best);
-        }
-        self.search(place, best)
-    }
-
-    /// Looks for a nearer point on one arc.
-    fn look(&self, arc: usize, place: &Point2, best: &mut Best) {
-        let (s, square) = self.arcs[arc].cubic.nearest(place);
-        let distance = square.sqrt();
-        if distance < best.distance {
-            *best = Best { distance, arc, s };
-        }
+        self.search(place, Best { distance: reach, bound: reach, arc: usize::MAX, s: 0.0 })
     }
 
     fn search(&self, place: &Point2, mut best: Best) -> Option<Foot> {
@@ -210,20 +191,14 @@ impl FootFinder {
         while height > 0 {
             height -= 1;
             let (mut at, square) = stack[height];
-            if square >= best.distance * best.distance {
+            if square > best.bound * best.bound {
                 continue;
             }
             loop {
                 let node = &self.nodes[at as usize];
                 if node.arcs > 0 {
                     let from = node.link as usize;
-                    for arc in from..from + node.arcs as usize {
-                        let chord = &self.chords[arc];
-                        let limit = best.distance + chord.bulge;
-                        if chord.distance_squared(place) < limit * limit {
-                            self.look(arc, place, &mut best);
-                        }
-                    }
+                    self.look(from, from + node.arcs as usize, place, &mut best);
                     break;
                 }
                 let (first, second) = (at + 1, node.link);
@@ -231,12 +206,12 @@ impl FootFinder {
                 let two = self.nodes[second as usize].distance_squared(place);
                 let (near, far) =
                     if two < one { ((second, two), (first, one)) } else { ((first, one), (second, two)) };
-                let most = best.distance * best.distance;
-                if far.1 < most && height < DEEPEST {
+                let most = best.bound * best.bound;
+                if far.1 <= most && height < DEEPEST {
                     stack[height] = far;
                     height += 1;
                 }
-                if near.1 >= most {
+                if near.1 > most {
                     break;
                 }
                 at = near.0;
@@ -248,7 +223,24 @@ impl FootFinder {
             t: arc.from + best.s * arc.length,
             point: Point2::from(arc.cubic.at(best.s)),
             distance: best.distance,
-            arc: best.arc,
         })
+    }
+
+    /// Looks for a nearer point on the arcs of a leaf, first at their chords: few arcs are left then.
+    fn look(&self, from: usize, to: usize, place: &Point2, best: &mut Best) {
+        let mut distances = [0.0; LEAF];
+        for (chord, distance) in self.chords[from..to].iter().zip(&mut distances) {
+            *distance = chord.distance(place);
+            best.bound = best.bound.min(*distance + chord.bulge);
+        }
+        for (arc, distance) in (from..to).zip(distances) {
+            if distance - self.chords[arc].bulge <= best.bound {
+                let (s, square) = self.arcs[arc].cubic.nearest(place);
+                let distance = square.sqrt();
+                if distance < best.distance {
+                    *best = Best { distance, bound: best.bound.min(distance), arc, s };
+                }
+            }
+        }
     }
 }

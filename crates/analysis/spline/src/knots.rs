@@ -1,6 +1,6 @@
 //! Points made ready to be the knots of a spline: checked, points that coincide merged, with the cumulative chord length as parameter.
 
-use biplane_geometry::Point2;
+use biplane_geometry::{Point2, Vector2};
 use thiserror::Error;
 
 /// Largest coordinate or standard deviation: squares and cubes of what is below stay far from overflow.
@@ -60,7 +60,7 @@ pub enum PointsError {
 /// Knots of a spline to come.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Knots {
-    pub points: Vec<Point2>,
+    pub points: Vec<Vector2>,
     /// Variance of each point across the curve, px^2.
     pub variances: Vec<f64>,
     /// From each point to the next; of a closed curve also from the last to the first.
@@ -101,7 +101,7 @@ impl Knots {
             closed,
             knot_of: Vec::with_capacity(points.len()),
         };
-        for (i, p) in points.iter().enumerate() {
+        for (i, p) in points.iter().map(|p| &p.coords).enumerate() {
             match knots.points.last() {
                 Some(before) if (p - before).norm() <= least => {
                     let last = knots.points.len() - 1;
@@ -134,7 +134,7 @@ impl Knots {
     }
 
     /// Makes one of a knot and a point at the same place.
-    fn absorb(&mut self, knot: usize, point: &Point2, variance: f64) {
+    fn absorb(&mut self, knot: usize, point: &Vector2, variance: f64) {
         let (v, both) = (self.variances[knot], self.variances[knot] + variance);
         if both > 0.0 {
             let here = self.points[knot];

@@ -1,10 +1,14 @@
 //! A spline near points: as smooth as their noise asks for.
 //!
-//! It minimises `sum |y_i - g(t_i)|^2 / sigma_i^2 + lambda * integral |g''|^2` (C. H. Reinsch, Smoothing by spline functions, Numerische
-//! Mathematik 10, 1967; periodic too), solved for the second derivatives at the knots in a time proportional to their number. `lambda` is
-//! chosen from the points by a [`Choice`]. What decides it are the residuals **across** the curve alone: along it a point of an edge has
-//! no error that means anything. The effective degrees of freedom are the trace of the smoother `A`, exact (M. F. Hutchinson and
-//! F. R. de Hoog, 1985), and the standard deviation of a smoothed point is `sigma_i sqrt(A_ii)` (G. Wahba, 1983).
+//! The smoothing spline minimises `sum |y_i - g(t_i)|^2 / sigma_i^2 + lambda * integral |g''|^2` (C. H. Reinsch, Smoothing by spline
+//! functions, Numerische Mathematik 10, 1967; periodic too), solved for the second derivatives at the knots in a time proportional to
+//! their number. It pulls round outlines inwards. So what it left is smoothed as well and put back ("twicing", J. W. Tukey 1977; W. Stuetzle
+//! and Y. Mittal 1979): a wave of which the smoother loses a share `e` loses `e^2` then, for the same noise with a larger `lambda`.
+//!
+//! `lambda` is chosen from the points by a [`Choice`]. What decides are the residuals **across** the curve alone: along it a point of an edge
+//! has no error that means anything. The degrees of freedom come from the trace of the smoother, which is exact (M. F. Hutchinson and F. R. de
+//! Hoog, 1985); that of the smoother used twice is taken for what it is with even spacing. The minimum is looked for downhill from a width of
+//! four points, so among several the one next to that is taken.
 //!
 //! It is least squares: a point that is far off pulls the curve, unless its standard deviation says so.
 
@@ -21,19 +25,29 @@ const SAME: f64 = 1e-3;
 const WIDTHS: [f64; 2] = [-4.0, 2.0];
 /// Steps of the parabola to the minimum of the criterion.
 const REFINEMENTS: usize = 2;
+/// Trace of the smoother used twice, `2 A - A^2`, by that of `A`: for points evenly spaced `A` keeps `1 / (1 + x^4)` of a wave, whose
+/// square has three quarters of its integral.
+const TWICE: f64 = 1.25;
 /// Fewest points whose own differences tell their noise.
 const FEWEST: usize = 16;
 
 /// How the smoothing weight is chosen.
+///
+/// Root mean square distance from the truth, px, of 20 smoothed ellipses of 100 x 60 px with noise of 0.2 px (measured by
+/// `cargo test -p biplane-spline --test noise -- --nocapture`):
+///
+/// TABLE
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Choice {
     /// Least expected error, by the stated standard deviations (C. L. Mallows, 1973), or where the differences of neighbouring points say
     /// that they are too small, by those (see [`Smoothed::sigma_factor`]).
     #[default]
     Risk,
-    /// The weighted sum of squared residuals is what the stated standard deviations let expect, given the degrees of freedom.
+    /// The weighted sum of squared residuals is what the stated standard deviations let expect, given the degrees of freedom. The most used
+    /// rule, and the worst where these are wrong.
     Discrepancy,
     /// Generalised cross-validation (P. Craven and G. Wahba, 1979): the standard deviations need to be right up to a common factor alone.
+    /// Follows noise that neighbours share, unless [`Smoothing::correlated_points`] tells of it.
     CrossValidation,
 }
 
@@ -102,13 +116,8 @@ impl Spline {
 
 /// Where nothing is to be smoothed.
 fn through(knots: &Knots) -> Result<Smoothed, PointsError> {
-    let roughness = Roughness::of(knots);
-    let mut factors = Factors::new();
-    factors.factorise(&roughness.energy, 0.0, &roughness.energy).ok_or(PointsError::Unsolvable)?;
-    let mut bends = roughness.differences(&knots.points);
-    factors.solve(&mut bends);
     Ok(Smoothed {
-        spline: Spline::assemble(knots, &knots.points, &roughness.all(&bends)),
+        spline: Spline::through_knots(knots)?,
         freedom: knots.points.len() as f64,
         mean_square: 0.0,
         sigma_factor: 1.0,
@@ -134,7 +143,9 @@ struct Smoother<'a> {
     /// Second derivatives, and the band of the inverse.
     bends: Vec<[f64; 2]>,
     inverse: Vec<[f64; 3]>,
-    fitted: Vec<Point2>,
+    fitted: Vec<Vector2>,
+    residuals: Vec<Vector2>,
+    more: Vec<[f64; 2]>,
     /// `A_ii`.
     leverage: Vec<f64>,
 }
@@ -165,7 +176,8 @@ impl<'a> Smoother<'a> {
                 }
             }
         }
-        let differences = roughness.differences(&knots.points);
+        let mut differences = Vec::with_capacity(unknowns);
+        roughness.differences(&knots.points, &mut differences);
         let factor = if how.choice == Choice::Risk { noise_factor(knots).max(1.0) } else { 1.0 };
         Self {
             knots,
@@ -180,6 +192,8 @@ impl<'a> Smoother<'a> {
             bends: Vec::with_capacity(unknowns),
             inverse: Vec::with_capacity(unknowns),
             fitted: Vec::with_capacity(count),
+            residuals: Vec::with_capacity(count),
+            more: Vec::with_capacity(unknowns),
             leverage: Vec::with_capacity(count),
         }
     }
@@ -187,30 +201,31 @@ impl<'a> Smoother<'a> {
     /// Fits with a weight; `None` where that cannot be solved.
     fn fit(&mut self, weight: f64) -> Option<Score> {
         self.factors.factorise(&self.roughness.energy, weight, &self.spread)?;
+        self.factors.inverse_band(&mut self.inverse);
         self.bends.clone_from(&self.differences);
         self.factors.solve(&mut self.bends);
-        self.factors.inverse_band(&mut self.inverse);
-        self.fitted.clear();
+        self.residuals.clear();
         self.leverage.clear();
-        for (knot, (y, v)) in self.knots.points.iter().zip(&self.variances).enumerate() {
-            let [(i, a), (j, b), (k, c)] = self.roughness.row(knot);
-            let bend = |at: Option<usize>| at.map_or([0.0; 2], |n| self.bends[n]);
-            let (p, q, r) = (bend(i), bend(j), bend(k));
-            let along = weight * v;
-            let residual =
-                Vector2::new(a * p[0] + b * q[0] + c * r[0], a * p[1] + b * q[1] + c * r[1]) * along;
-            self.fitted.push(y - residual);
-            let entry = |at: Option<usize>, k: usize| at.map_or(0.0, |n| self.inverse[n][k]);
-            // An entry of an unknown that is not there has none on either side of it.
-            let pair =
-                |one: Option<usize>, two: Option<usize>, k| if two.is_some() { entry(one, k) } else { 0.0 };
-            let form = a * a * entry(i, 0)
-                + b * b * entry(j, 0)
-                + c * c * entry(k, 0)
-                + 2.0 * (a * b * pair(i, j, 1) + b * c * pair(j, k, 1) + a * c * pair(i, k, 2));
-            self.leverage.push((1.0 - along * form).clamp(0.0, 1.0));
+        for (knot, v) in self.variances.iter().enumerate() {
+            let row = self.roughness.row(knot);
+            self.residuals.push(combined(&row, &self.bends) * (weight * v));
+            self.leverage.push((1.0 - weight * v * form(&row, &self.inverse)).clamp(0.0, 1.0));
         }
-        let score = Score { squares: self.squares_across() / self.unit, freedom: self.leverage.iter().sum() };
+        // Once more, what was left.
+        self.roughness.differences(&self.residuals, &mut self.more);
+        self.factors.solve(&mut self.more);
+        self.fitted.clear();
+        for (knot, (y, v)) in self.knots.points.iter().zip(&self.variances).enumerate() {
+            self.fitted.push(y - combined(&self.roughness.row(knot), &self.more) * (weight * v));
+        }
+        for (bend, more) in self.bends.iter_mut().zip(&self.more) {
+            *bend = [bend[0] + more[0], bend[1] + more[1]];
+        }
+        // Of the constants, or of the straight lines, nothing is smoothed away.
+        let kept = if self.knots.closed { 1.0 } else { 2.0 };
+        let trace = self.leverage.iter().sum::<f64>();
+        let freedom = (kept + TWICE * (trace - kept).max(0.0)).min(self.knots.points.len() as f64);
+        let score = Score { squares: self.squares_across() / self.unit, freedom };
         (score.squares.is_finite() && score.freedom.is_finite()).then_some(score)
     }
 
@@ -260,7 +275,7 @@ impl<'a> Smoother<'a> {
         let variance = if self.how.choice == Choice::CrossValidation { mean_square } else { self.factor };
         let shared = self.how.correlated_points.max(1.0);
         let sigma = |k: &usize| {
-            let share = (self.leverage[*k] * shared).min(1.0);
+            let share = (TWICE * shared * self.leverage[*k]).min(1.0);
             (self.knots.variances[*k] * share * variance).sqrt()
         };
         Ok(Smoothed {
@@ -271,6 +286,30 @@ impl<'a> Smoother<'a> {
             sigmas: self.knots.knot_of.iter().map(sigma).collect(),
         })
     }
+}
+
+/// A row of `Q` times unknowns.
+fn combined(row: &[(Option<usize>, f64); 3], unknowns: &[[f64; 2]]) -> Vector2 {
+    let mut sum = [0.0; 2];
+    for (at, q) in row {
+        let [x, y] = at.map_or([0.0; 2], |at| unknowns[at]);
+        sum = [sum[0] + q * x, sum[1] + q * y];
+    }
+    Vector2::from(sum)
+}
+
+/// A row `q` of `Q` about the inverse of the equations: `q B^-1 q'`.
+fn form(row: &[(Option<usize>, f64); 3], inverse: &[[f64; 3]]) -> f64 {
+    let mut sum = 0.0;
+    for (first, (i, a)) in row.iter().enumerate() {
+        for (step, (j, b)) in row[first..].iter().enumerate() {
+            if let (Some(i), Some(_)) = (i, j) {
+                let twice = if step == 0 { 1.0 } else { 2.0 };
+                sum += twice * a * b * inverse[*i][step];
+            }
+        }
+    }
+    sum
 }
 
 /// Square of the factor by which points scatter across the curve more than stated: from the cubic through four neighbours, whose third

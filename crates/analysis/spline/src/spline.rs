@@ -32,17 +32,22 @@ impl Spline {
     /// # Errors
     /// If a coordinate is not finite, or fewer than 2 points (3 of a closed curve) differ.
     pub fn through(points: &[Point2], closed: bool) -> Result<Self, PointsError> {
-        let knots = Knots::new(points, None, closed, SAME)?;
-        let roughness = Roughness::of(&knots);
+        Self::through_knots(&Knots::new(points, None, closed, SAME)?)
+    }
+
+    /// Through the points of knots.
+    pub(crate) fn through_knots(knots: &Knots) -> Result<Self, PointsError> {
+        let roughness = Roughness::of(knots);
         let mut factors = Factors::new();
         factors.factorise(&roughness.energy, 0.0, &roughness.energy).ok_or(PointsError::Unsolvable)?;
-        let mut bends = roughness.differences(&knots.points);
+        let mut bends = Vec::new();
+        roughness.differences(&knots.points, &mut bends);
         factors.solve(&mut bends);
-        Ok(Self::assemble(&knots, &knots.points, &roughness.all(&bends)))
+        Ok(Self::assemble(knots, &knots.points, &roughness.all(&bends)))
     }
 
     /// From values and second derivatives at the knots.
-    pub(crate) fn assemble(knots: &Knots, points: &[Point2], bends: &[Vector2]) -> Self {
+    pub(crate) fn assemble(knots: &Knots, points: &[Vector2], bends: &[Vector2]) -> Self {
         let count = points.len();
         let mut at = vec![0.0];
         let mut t = 0.0;
@@ -51,7 +56,7 @@ impl Spline {
             let j = (i + 1) % count;
             let (from, to) = (bends[i] * (h * h), bends[j] * (h * h));
             Cubic([
-                points[i].coords,
+                points[i],
                 (points[j] - points[i]) - (from * 2.0 + to) / 6.0,
                 from / 2.0,
                 (to - from) / 6.0,
@@ -153,13 +158,17 @@ impl Spline {
 #[derive(Debug)]
 pub(crate) struct Roughness<'a> {
     knots: &'a Knots,
+    /// Reciprocals of the chords.
+    steepness: Vec<f64>,
     /// `R`: the integral of the square of the second derivative.
     pub energy: Band,
 }
 
 impl<'a> Roughness<'a> {
     pub fn of(knots: &'a Knots) -> Self {
-        let mut roughness = Self { knots, energy: Band::zeros(Self::unknowns(knots), knots.closed) };
+        let unknowns = if knots.closed { knots.points.len() } else { knots.points.len() - 2 };
+        let steepness = knots.chords.iter().map(|h| 1.0 / h).collect();
+        let mut roughness = Self { knots, steepness, energy: Band::zeros(unknowns, knots.closed) };
         let count = knots.points.len();
         for (k, h) in knots.chords.iter().enumerate() {
             let (i, j) = (roughness.unknown(k), roughness.unknown((k + 1) % count));
@@ -173,10 +182,6 @@ impl<'a> Roughness<'a> {
         roughness
     }
 
-    fn unknowns(knots: &Knots) -> usize {
-        if knots.closed { knots.points.len() } else { knots.points.len() - 2 }
-    }
-
     /// Number of the unknown of a knot.
     fn unknown(&self, knot: usize) -> Option<usize> {
         if self.knots.closed {
@@ -187,11 +192,11 @@ impl<'a> Roughness<'a> {
 
     /// Row `knot` of `Q`: the unknowns whose differences the knot's value is part of, and by what factor.
     pub fn row(&self, knot: usize) -> [(Option<usize>, f64); 3] {
-        let (count, chords) = (self.knots.points.len(), &self.knots.chords);
+        let count = self.knots.points.len();
         let before = if knot > 0 { Some(knot - 1) } else { self.knots.closed.then_some(count - 1) };
         let after = (self.knots.closed || knot + 1 < count).then_some((knot + 1) % count);
-        let (left, right) =
-            (before.map_or(0.0, |b| 1.0 / chords[b]), after.map_or(0.0, |_| 1.0 / chords[knot]));
+        let left = before.map_or(0.0, |b| self.steepness[b]);
+        let right = after.map_or(0.0, |_| self.steepness[knot]);
         [
             (before.and_then(|b| self.unknown(b)), left),
             (self.unknown(knot), -(left + right)),
@@ -200,9 +205,9 @@ impl<'a> Roughness<'a> {
     }
 
     /// `Q' y`: differences of the slopes of the chords at the knots that are unknowns.
-    pub fn differences(&self, points: &[Point2]) -> Vec<[f64; 2]> {
-        let count = points.len();
-        let slope = |k: usize| (points[(k + 1) % count] - points[k]) / self.knots.chords[k];
+    pub fn differences(&self, y: &[Vector2], into: &mut Vec<[f64; 2]>) {
+        let count = y.len();
+        let slope = |k: usize| (y[(k + 1) % count] - y[k]) * self.steepness[k];
         let first = usize::from(!self.knots.closed);
         let mut before = if self.knots.closed { slope(count - 1) } else { slope(0) };
         let one = |k: usize| {
@@ -211,7 +216,8 @@ impl<'a> Roughness<'a> {
             before = after;
             [difference.x, difference.y]
         };
-        (first..count - first).map(one).collect()
+        into.clear();
+        into.extend((first..count - first).map(one));
     }
 
     /// Second derivatives at all knots.
