@@ -16,6 +16,7 @@ mod model;
 mod npy;
 mod picture;
 mod plate;
+mod slice_contours;
 mod spots;
 mod volume;
 
@@ -32,5 +33,6 @@ pub use matched::{Match, PoseRecord, Verdict, ViewFit};
 pub use model::{ModelMesh, Start};
 pub use picture::Picture;
 pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};
+pub use slice_contours::{ContourSlice, SliceContour, SliceContours, SliceFlag, SlicePoint};
 pub use spots::{Circle, Spot, Spots};
 pub use volume::Volume;
