@@ -287,8 +287,8 @@ pub enum VolumeFileError {
     },
     /// More voxels than the file can hold, or than are read.
     #[error(
-        "{} claims {} x {} x {} voxels, which a file of {length} bytes cannot hold, or more than are read ({MAX_VOXELS}, \
-         {MAX_ALONG} along an axis)", path.display(), sizes[0], sizes[1], sizes[2]
+        "{} claims {} x {} x {} voxels, which a file of {length} bytes cannot hold (it is cut short, or damaged), or more than \
+         are read ({MAX_VOXELS}, {MAX_ALONG} along an axis)", path.display(), sizes[0], sizes[1], sizes[2]
     )]
     Impossible {
         /// The file of the voxels.

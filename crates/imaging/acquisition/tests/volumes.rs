@@ -809,6 +809,11 @@ fn a_size_that_the_file_cannot_hold_takes_no_memory() {
     assert!(
         bomb.len() < 1 << 15 && text("uint8", "gzip", "2 3 4", &bomb).contains("more than the 24 voxels")
     );
+    // More to be decoded before the voxels than any file has there.
+    for more in ["byte skip: 2000000000", "byte skip: 9000000000000000000"] {
+        let text = message(&write(&folder, "a", &[header("uint8", "gzip", more).as_bytes(), &bomb]));
+        assert!(text.contains("expected a number, or -1"), "{text}");
+    }
     let mut n = Nifti::new(false);
     n.shorts(42, &[i16::MAX; 3]);
     assert!(message(&write(&folder, "a", &[&n.bytes])).contains("claims 32767 x 32767 x 32767 voxels"));

@@ -42,7 +42,7 @@ pub(super) fn describe(file: &VolumeFile) -> Description {
     let [i, j, k] = orientation.towards;
     let handed = if orientation.right_handed { "" } else { "; left-handed" };
     d.line("axes", format!("columns go to {i}, rows to {j}, slices to {k}{handed}"));
-    d.line("frame", "the scanner's, left-posterior-superior, mm; positions are those of voxel centres");
+    d.line("frame", "left-posterior-superior, mm; places are those of voxel centres");
     // From centre to centre, over all corners.
     let corners = [0, slices.saturating_sub(1)].into_iter().flat_map(|k| {
         let (right, down) = (*columns as f64 - 1.0, *rows as f64 - 1.0);

@@ -20,6 +20,8 @@ use super::{Source, VolumeFile, VolumeFileError, VolumeFormat, VolumeNote};
 pub(super) const MAGIC: &[u8] = b"NRRD000";
 /// Bytes of a header.
 const MAX_HEADER: u64 = 1 << 20;
+/// Bytes, or lines, before the voxels.
+const MAX_SKIPPED: u64 = 1 << 30;
 const ADVICE: &str = "save one volume of three axes with one value a voxel";
 /// The fields that are read, in lower case without blanks: older files write `datafile` for `data file`.
 const READ: [&str; 15] = [
@@ -90,7 +92,14 @@ pub(super) fn read(path: &Path) -> Result<VolumeFile, VolumeFileError> {
             Ok(skipped) => skipped,
             // All that comes before the voxels at the end; it is decoded twice, so that none of it has to be kept.
             Err(_) => {
-                let whole = io::copy(&mut decoded(open()?, encoding), &mut io::sink()).map_err(failed)?;
+                let limit = layout.bytes() + MAX_SKIPPED + 1;
+                let mut whole = decoded(open()?, encoding).take(limit);
+                let whole = io::copy(&mut whole, &mut io::sink()).map_err(failed)?;
+                if whole == limit {
+                    return Err(
+                        source.damaged(format!("more than {MAX_SKIPPED} bytes come before its voxels"))
+                    );
+                }
                 whole.saturating_sub(layout.bytes())
             }
         };
@@ -287,7 +296,8 @@ impl<'a> Header<'a> {
     fn skip(&self, name: &str, least: i64) -> Result<i64, VolumeFileError> {
         let Some(value) = self.value(name) else { return Ok(0) };
         let expected = if least < 0 { "a number, or -1 for voxels at the end" } else { "a number" };
-        value.parse().ok().filter(|n| *n >= least).ok_or_else(|| self.wrong(name, expected))
+        let most = MAX_SKIPPED as i64;
+        value.parse().ok().filter(|n| (least..=most).contains(n)).ok_or_else(|| self.wrong(name, expected))
     }
 
     /// The file of the voxels, and the byte where its lines begin.

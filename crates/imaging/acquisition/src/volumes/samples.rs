@@ -181,7 +181,9 @@ impl<R: BufRead> Read for HexReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let mut written = 0;
         let mut high = None;
-        for byte in self.0.by_ref().bytes() {
+        let mut bytes = self.0.by_ref().bytes();
+        while written < buffer.len() {
+            let Some(byte) = bytes.next() else { break };
             let byte = byte?;
             if byte.is_ascii_whitespace() {
                 continue;
@@ -195,9 +197,6 @@ impl<R: BufRead> Read for HexReader<R> {
                     buffer[written] = high | digit;
                     written += 1;
                 }
-            }
-            if written == buffer.len() {
-                break;
             }
         }
         // Half a byte at the end is none.

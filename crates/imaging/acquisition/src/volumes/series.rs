@@ -28,10 +28,10 @@ const GAP: f64 = 1.5;
 /// Distances within this share of the usual one are even.
 const EVEN: f64 = 0.02;
 
-/// Whether a folder's first DICOM file is a slice with a place in the patient.
+/// Whether a folder holds a DICOM slice with a place in the patient.
 pub(crate) fn is_series(folder: &Path) -> bool {
-    let first = dicom_files(folder).ok().and_then(|(files, _)| files.into_iter().next());
-    first.is_some_and(|path| matches!(Slice::open(&path), Ok(Some(_))))
+    dicom_files(folder)
+        .is_ok_and(|(files, _)| files.iter().any(|path| matches!(Slice::open(path), Ok(Some(_)))))
 }
 
 /// The DICOM files of a folder in natural order, and how many files were looked at.
