@@ -234,8 +234,9 @@ fn equal_frames_are_segmented_once() {
         Hashed::new(Frame { width: 64, height: 64, samples, bits: 8 })
     };
     let how = |item: &str, frame: Hashed<Frame>| {
-        let promised = SegmentInputs { frame: frame.promise() };
-        let load = || Ok::<_, std::convert::Infallible>(SegmentInputs { frame: frame.clone() });
+        let promised = SegmentInputs { frame: frame.promise(), mask: Vec::new() };
+        let load =
+            || Ok::<_, std::convert::Infallible>(SegmentInputs { frame: frame.clone(), mask: Vec::new() });
         let context = Context::new();
         store
             .execute::<Segment, _>("segment", &Item::from(item), &params, &promised, load, &context)

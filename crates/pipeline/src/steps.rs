@@ -115,9 +115,12 @@ impl Steps<'_> {
     /// The picture cannot be used, the stage failed, or the store did.
     pub fn segment(&self, job: &Job, slot: usize) -> Result<(Stored<Curves>, How), ItemError> {
         let facts = self.picture(job, slot)?;
-        let promised = SegmentInputs::<Promised> { frame: facts.promise() };
-        let load =
-            || self.prepared.read(&job.pictures[slot]).map(|f| SegmentInputs { frame: Hashed::new(f) });
+        let promised = SegmentInputs::<Promised> { frame: facts.promise(), mask: Vec::new() };
+        let load = || {
+            self.prepared
+                .read(&job.pictures[slot])
+                .map(|f| SegmentInputs { frame: Hashed::new(f), mask: Vec::new() })
+        };
         let item = self.item(job, self.view(job, slot).1);
         self.store
             .execute::<Segment, _>(SEGMENT, &item, &self.prepared.segment, &promised, load, self.context)
@@ -265,7 +268,7 @@ impl Steps<'_> {
         let facts = self.picture(job, slot)?;
         let parts = KeyParts::of::<Segment>(
             &self.prepared.segment,
-            &SegmentInputs::<Promised> { frame: facts.promise() },
+            &SegmentInputs::<Promised> { frame: facts.promise(), mask: Vec::new() },
         );
         self.explain::<Segment>(SEGMENT, &self.item(job, self.view(job, slot).1), &parts)
     }

@@ -11,7 +11,7 @@ const CLASSES: usize = 16;
 /// A class with fewer places takes the noise of the whole.
 const FEWEST: usize = 200;
 /// One place in so many rows and columns is looked at.
-const STEP: usize = 3;
+const STEP: usize = 4;
 
 /// Standard deviation of single pixels, grey levels of 0..255.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -189,7 +189,7 @@ pub fn expose(
     for (index, (view, exposure)) in equipment.views.iter().enumerate() {
         let seed = seed.wrapping_mul(1_000_003).wrapping_add((number * 8 + index) as u64);
         let frame = picture(scene, view, exposure, seed).map_err(|e| SceneError::Mesh(e.to_string()))?;
-        segmented.push(curves(&frame, &SegmentParams::default())?);
+        segmented.push(curves(&frame, None, &SegmentParams::default())?);
         frames.push(frame);
     }
     Ok((frames, segmented))

@@ -211,7 +211,7 @@ impl Scene {
                 let trial = &study.trials[job.trial];
                 let (mut views, mut all) = (Vec::new(), Vec::new());
                 for ((view, _), source) in trial.frames.iter().zip(&job.pictures) {
-                    let curves = curves(&prepared.read(source)?, &study.segment)?;
+                    let curves = curves(&prepared.read(source)?, None, &study.segment)?;
                     let fluoroscope = fluoroscopes[*view].clone();
                     views
                         .push(View { edges: EdgeField::new(&curves, fluoroscope.distortion()), fluoroscope });
