@@ -213,6 +213,13 @@ fn detached_nrrd_finds_its_voxels() {
         assert_eq!(file.volume.samples, expected, "{encoding} {more}");
         assert_eq!(file.files, [path, folder.path().join("voxels.dat")]);
     }
+    for more in ["byte skip: 2", "byte skip: 0", "line skip: 1"] {
+        let (before, text) = (if more.ends_with('0') { "" } else { "9\n" }, "1 ".repeat(24));
+        let file = read_volume(read("text", more, &[before, &text].concat().into_bytes())).unwrap();
+        assert_eq!(file.volume.samples, [1.0; 24], "{more}");
+    }
+    let text = message(&read("text", "byte skip: -1", &raw));
+    assert!(text.contains("expected a number, found `-1`"), "{text}");
     let text = message(&read("raw", "byte skip: -5", &raw));
     assert!(text.contains("expected a number, or -1 for voxels at the end, found `-5`"), "{text}");
     let text = message(&read("raw", "", &[raw.clone(), vec![0]].concat()));

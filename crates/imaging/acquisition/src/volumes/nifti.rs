@@ -94,8 +94,7 @@ pub(super) fn read(path: &Path) -> Result<VolumeFile, VolumeFileError> {
     if passed < skipped {
         return Err(header_cut(io::ErrorKind::UnexpectedEof.into()));
     }
-    // What follows is unpacked already.
-    let samples = layout.read(source, stream, Encoding::Raw)?;
+    let samples = layout.read(source, stream)?;
     if samples.rounded > 0 {
         notes.push(VolumeNote::Rounded { voxels: samples.rounded });
     }

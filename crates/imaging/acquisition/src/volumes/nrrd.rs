@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 
 use super::grid::Grid;
-use super::samples::{Encoding, Layout, SampleType, decoded, fault};
+use super::samples::{Encoding, Layout, SampleType, Samples, decoded, fault};
 use super::{Source, VolumeFile, VolumeFileError, VolumeFormat, VolumeNote};
 
 pub(super) const MAGIC: &[u8] = b"NRRD000";
@@ -71,43 +71,7 @@ pub(super) fn read(path: &Path) -> Result<VolumeFile, VolumeFileError> {
     let io = |e| source.io(e);
     let length = File::open(&data).and_then(|file| file.metadata()).map_err(io)?.len();
     layout.check(source, encoding, length)?;
-    let open = || -> Result<BufReader<File>, VolumeFileError> {
-        let mut file = BufReader::new(File::open(&data).map_err(io)?);
-        file.seek(SeekFrom::Start(start)).map_err(io)?;
-        for line in 0..header.skip("lineskip", 0)? {
-            if file.skip_until(b'\n').map_err(io)? == 0 {
-                return Err(
-                    source.damaged(format!("it ends after {line} of the lines that its header skips"))
-                );
-            }
-        }
-        Ok(file)
-    };
-    let bytes_skipped = header.skip("byteskip", -1)?;
-    let samples = if bytes_skipped == 0 || encoding == Encoding::Text {
-        layout.read(source, open()?, encoding)?
-    } else {
-        let failed = |e| fault(source, e, 0, layout.bytes() / layout.kind.bytes() as u64);
-        let skipped = match u64::try_from(bytes_skipped) {
-            Ok(skipped) => skipped,
-            // All that comes before the voxels at the end; it is decoded twice, so that none of it has to be kept.
-            Err(_) => {
-                let limit = layout.bytes() + MAX_SKIPPED + 1;
-                let mut whole = decoded(open()?, encoding).take(limit);
-                let whole = io::copy(&mut whole, &mut io::sink()).map_err(failed)?;
-                if whole == limit {
-                    return Err(
-                        source.damaged(format!("more than {MAX_SKIPPED} bytes come before its voxels"))
-                    );
-                }
-                whole.saturating_sub(layout.bytes())
-            }
-        };
-        let mut stream = BufReader::new(decoded(open()?, encoding));
-        io::copy(&mut stream.by_ref().take(skipped), &mut io::sink()).map_err(failed)?;
-        // What follows is decoded already.
-        layout.read(source, stream, Encoding::Raw)?
-    };
+    let samples = header.samples(source, start, &layout, encoding)?;
     if samples.rounded > 0 {
         notes.push(VolumeNote::Rounded { voxels: samples.rounded });
     }
@@ -316,6 +280,47 @@ impl<'a> Header<'a> {
             return Err(self.wrong("datafile", "`data file:` and a name"));
         }
         Ok((self.source.0.parent().unwrap_or(Path::new("")).join(name), 0))
+    }
+
+    /// Reads the samples of a file, from what begins at the byte `start`.
+    fn samples(
+        &self,
+        data: Source<'_>,
+        start: u64,
+        layout: &Layout,
+        encoding: Encoding,
+    ) -> Result<Samples, VolumeFileError> {
+        let io = |e| data.io(e);
+        let open = || -> Result<_, VolumeFileError> {
+            let mut file = BufReader::new(File::open(data.0).map_err(io)?);
+            file.seek(SeekFrom::Start(start)).map_err(io)?;
+            for line in 0..self.skip("lineskip", 0)? {
+                if file.skip_until(b'\n').map_err(io)? == 0 {
+                    return Err(
+                        data.damaged(format!("it ends after {line} of the lines that its header skips"))
+                    );
+                }
+            }
+            Ok(BufReader::new(decoded(file, encoding)))
+        };
+        let failed = |e| fault(data, e, 0, layout.voxels());
+        // Where text ends says nothing of where it begins.
+        let least = if encoding == Encoding::Text { 0 } else { -1 };
+        let skipped = match u64::try_from(self.skip("byteskip", least)?) {
+            Ok(skipped) => skipped,
+            // All that comes before the voxels at the end; it is decoded twice, so that none of it has to be kept.
+            Err(_) => {
+                let limit = layout.bytes() + MAX_SKIPPED + 1;
+                let whole = io::copy(&mut open()?.take(limit), &mut io::sink()).map_err(failed)?;
+                if whole == limit {
+                    return Err(data.damaged(format!("more than {MAX_SKIPPED} bytes come before its voxels")));
+                }
+                whole.saturating_sub(layout.bytes())
+            }
+        };
+        let mut stream = open()?;
+        io::copy(&mut stream.by_ref().take(skipped), &mut io::sink()).map_err(failed)?;
+        if encoding == Encoding::Text { layout.read_text(data, stream) } else { layout.read(data, stream) }
     }
 
     fn grid(&self) -> Result<(Grid, Vec<VolumeNote>), VolumeFileError> {

@@ -139,7 +139,8 @@ impl Layout {
         Ok(())
     }
 
-    fn voxels(&self) -> u64 {
+    /// Of sizes that were checked.
+    pub(super) fn voxels(&self) -> u64 {
         self.sizes.iter().product()
     }
 
@@ -148,19 +149,22 @@ impl Layout {
         self.voxels() * self.kind.bytes() as u64
     }
 
-    /// Reads the samples from a stream that begins with the first one and ends after the last.
-    pub(super) fn read(
+    /// Reads the samples from a stream that begins with the first byte of them and ends after the last.
+    pub(super) fn read(&self, source: Source<'_>, stream: impl Read) -> Result<Samples, VolumeFileError> {
+        let mut taken = Taken::new(self, source);
+        taken.binary(stream)?;
+        Ok(taken.samples)
+    }
+
+    /// The same, of numbers written as text.
+    pub(super) fn read_text(
         &self,
         source: Source<'_>,
         stream: impl BufRead,
-        encoding: Encoding,
     ) -> Result<Samples, VolumeFileError> {
-        let mut taken = Taken { layout: *self, source, levels: Vec::new(), rounded: 0 };
-        match encoding {
-            Encoding::Text => taken.text(stream)?,
-            _ => taken.binary(decoded(stream, encoding))?,
-        }
-        Ok(Samples { levels: taken.levels, rounded: taken.rounded })
+        let mut taken = Taken::new(self, source);
+        taken.text(stream)?;
+        Ok(taken.samples)
     }
 }
 
@@ -219,28 +223,31 @@ pub(super) fn fault(source: Source<'_>, error: io::Error, found: u64, expected: 
 struct Taken<'a> {
     layout: Layout,
     source: Source<'a>,
-    levels: Vec<f32>,
-    rounded: usize,
+    samples: Samples,
 }
 
-impl Taken<'_> {
+impl<'a> Taken<'a> {
+    fn new(layout: &Layout, source: Source<'a>) -> Self {
+        Self { layout: *layout, source, samples: Samples { levels: Vec::new(), rounded: 0 } }
+    }
+
     fn found(&self) -> u64 {
-        self.levels.len() as u64
+        self.samples.levels.len() as u64
     }
 
     fn push(&mut self, stored: f64) -> Result<(), VolumeFileError> {
         let Layout { kind, slope, intercept, sizes: [columns, rows, _], .. } = self.layout;
         let level = (stored * slope + intercept) as f32;
         if !level.is_finite() {
-            let (i, columns, rows) = (self.levels.len(), columns as usize, rows as usize);
+            let (i, columns, rows) = (self.samples.levels.len(), columns as usize, rows as usize);
             let at = [i % columns, i / columns % rows, i / columns / rows];
             return Err(VolumeFileError::NotFinite { path: self.source.path(), at });
         }
         // Through a slope every level is rounded anyway.
         if kind.is_whole() && (slope, intercept) == (1.0, 0.0) && f64::from(level) != stored {
-            self.rounded += 1;
+            self.samples.rounded += 1;
         }
-        self.levels.push(level);
+        self.samples.levels.push(level);
         Ok(())
     }
 
