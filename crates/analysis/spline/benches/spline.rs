@@ -90,4 +90,12 @@ fn main() {
             plain / tree
         );
     }
+    let round: Vec<Point2> = (0..1000)
+        .map(|k| std::f64::consts::TAU * f64::from(k) / 1000.0)
+        .map(|a| Point2::new(160.0 * a.cos(), 160.0 * a.sin()))
+        .collect();
+    let Ok(circle) = Spline::through(&round, true) else { return };
+    let finder = FootFinder::of(&circle);
+    let time = least(15, || finder.closest(&Point2::origin()));
+    println!("{:8.0} ns  at the centre of a circle, where all of it is equally near", time * 1e9);
 }
