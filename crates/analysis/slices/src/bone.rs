@@ -227,12 +227,29 @@ fn enclosed(
     let shell = |v: usize| off[v] <= reach && sorting[v] < half * levels[v];
     let starts = (0..stack.voxels()).filter(|&v| off[v] > 0.0 && off[v] <= rim && shell(v));
     let solid = grow::reached(stack, shell, starts);
-    let open = |v: usize| !(marrow[v] || solid[v]);
+    let kept = between(stack, &off, &solid);
+    let open = |v: usize| !(marrow[v] || kept[v]);
     let border = (0..stack.voxels()).filter(|&v| {
         let place = stack.place(v);
         (0..3).any(|a| place[a] == 0 || place[a] + 1 == stack.size[a])
     });
     grow::reached(stack, open, border).into_iter().map(|beyond| !beyond).collect()
+}
+
+/// A set with all that lies between it and the marrow: the way down the distance `off` from the marrow, from voxel to voxel.
+/// Where a slice is thick, marrow and shell share voxels that are neither bright nor dark.
+fn between(stack: &Stack, off: &[f32], set: &[bool]) -> Vec<bool> {
+    let mut kept = set.to_vec();
+    let mut walked = vec![false; set.len()];
+    for start in (0..set.len()).filter(|&v| set[v]) {
+        let mut at = start;
+        while !walked[at] && off[at] > 0.0 {
+            (walked[at], kept[at]) = (true, true);
+            let below = stack.neighbours(at).min_by(|&a, &b| off[a].total_cmp(&off[b]));
+            at = below.filter(|&b| off[b] < off[at]).unwrap_or(at);
+        }
+    }
+    kept
 }
 
 /// What is needed to place the contours of a slice.

@@ -120,6 +120,15 @@ fn mri(body: Body, across: usize, pixel: f64, slice: f64, faults: &MriFaults) ->
         println!("slice {k}: {:?}", s.flags);
     }
     let off = distances(&contours, outer, &pose);
+    if let Ok(folder) = std::env::var("SLICES_OUT") {
+        use biplane_artifact::Artifact;
+        let name = format!("{folder}/{}_{across}_{slice}_{}", body.name(), faults.bits);
+        std::fs::write(format!("{name}.json"), contours.encode()).unwrap();
+        let raw: Vec<u8> = stack.samples.iter().flat_map(|s| s.to_le_bytes()).collect();
+        std::fs::write(format!("{name}.raw"), raw).unwrap();
+        let text: Vec<String> = off.iter().map(|d| format!("{d:.3}")).collect();
+        std::fs::write(format!("{name}.off"), text.join(" ")).unwrap();
+    }
     (contours, off)
 }
 
