@@ -224,7 +224,9 @@ impl Study {
         if let Err(error) = file.segment.check() {
             let key = match &error {
                 SegmentError::Parameter { name, .. } => Some(*name),
-                SegmentError::NoEdge { .. } => None,
+                SegmentError::NoSeed => Some("method"),
+                SegmentError::Region { .. } => Some("region_px"),
+                SegmentError::Mask { .. } | SegmentError::NoEdge { .. } => None,
             };
             check.list.push(parameter(&text, "segment", key, &error.to_string()));
         }
