@@ -32,6 +32,9 @@ const TWICE: f64 = 1.25;
 const MEDIAN: f64 = 0.4549;
 /// A variance that is as good as none, px^2.
 const NO_NOISE: f64 = 1e-100;
+/// A variance that says as good as nothing, in those of most points: larger ones count as this one, so that the equations keep their
+/// precision.
+const NOTHING: f64 = 1e4;
 /// Fewest points whose own differences tell their noise.
 const FEWEST: usize = 16;
 
@@ -157,6 +160,9 @@ struct Smoother<'a> {
     bends: Vec<[f64; 2]>,
     inverse: Vec<[f64; 3]>,
     fitted: Vec<Vector2>,
+    /// Residuals by their variances in their unit.
+    pulls: Vec<Vector2>,
+    /// What the smoother left, and second derivatives of that smoothed.
     residuals: Vec<Vector2>,
     more: Vec<[f64; 2]>,
     /// `A_ii`.
@@ -176,7 +182,7 @@ impl<'a> Smoother<'a> {
     fn new(knots: &'a Knots, unit: f64, how: Smoothing) -> Self {
         let roughness = Roughness::of(knots);
         let count = knots.points.len();
-        let variances: Vec<f64> = knots.variances.iter().map(|v| v / unit).collect();
+        let variances: Vec<f64> = knots.variances.iter().map(|v| (v / unit).min(NOTHING)).collect();
         let unknowns = if knots.closed { count } else { count - 2 };
         let mut spread = Band::zeros(unknowns, knots.closed);
         for (knot, v) in variances.iter().enumerate() {
@@ -211,6 +217,7 @@ impl<'a> Smoother<'a> {
             bends: Vec::with_capacity(unknowns),
             inverse: Vec::with_capacity(unknowns),
             fitted: Vec::with_capacity(count),
+            pulls: Vec::with_capacity(count),
             residuals: Vec::with_capacity(count),
             more: Vec::with_capacity(unknowns),
             leverage: Vec::with_capacity(count),
@@ -234,8 +241,11 @@ impl<'a> Smoother<'a> {
         self.roughness.differences(&self.residuals, &mut self.more);
         self.factors.solve(&mut self.more);
         self.fitted.clear();
+        self.pulls.clear();
         for (knot, (y, v)) in self.knots.points.iter().zip(&self.variances).enumerate() {
-            self.fitted.push(y - combined(&self.roughness.row(knot), &self.more) * (weight * v));
+            let pull = combined(&self.roughness.row(knot), &self.more) * weight;
+            self.fitted.push(y - pull * *v);
+            self.pulls.push(pull);
         }
         for (bend, more) in self.bends.iter_mut().zip(&self.more) {
             *bend = [bend[0] + more[0], bend[1] + more[1]];
@@ -250,18 +260,27 @@ impl<'a> Smoother<'a> {
 
     /// Sum of the squares of the residuals across the curve by the variances in their unit, px^2.
     fn squares_across(&self) -> f64 {
-        let (fitted, count) = (&self.fitted, self.fitted.len());
-        let around = |k: usize, step: usize| if self.knots.closed { (k + step) % count } else { k + step };
+        let (fitted, last) = (&self.fitted, self.fitted.len() - 1);
         let one = |k: usize| {
-            let v = self.variances[k];
-            let before = if k == 0 && !self.knots.closed { 0 } else { around(k, count - 1) % count };
-            let after = around(k, 1).min(count - 1);
+            let before = if k > 0 {
+                k - 1
+            } else if self.knots.closed {
+                last
+            } else {
+                0
+            };
+            let after = if k < last {
+                k + 1
+            } else if self.knots.closed {
+                0
+            } else {
+                last
+            };
             let along = fitted[after] - fitted[before];
-            let off = self.knots.points[k] - fitted[k];
-            let (square, across) = (along.norm_squared(), along.perp(&off));
-            if v > 0.0 && square > 0.0 { across * across / (square * v) } else { 0.0 }
+            let (square, across) = (along.norm_squared(), along.perp(&self.pulls[k]));
+            if square > 0.0 { across * across / square * self.variances[k] } else { 0.0 }
         };
-        (0..count).map(one).sum()
+        (0..=last).map(one).sum()
     }
 
     /// What is to be least.
