@@ -35,6 +35,10 @@ const LEAST_MARROW_MM3: f64 = 100.0;
 const MOST_MARROW: f64 = 0.5;
 /// A shell has to be darker than marrow and than what is outside by this share of the marrow's level.
 const LEAST_CONTRAST: f64 = 0.1;
+/// A voxel is dark from this share of the shell's contrast on: of a shell thinner than a slice that leans there is no more.
+const DARK: f64 = 0.35;
+/// A surface that a slice spreads over more pixels than this has no edge in it.
+const MOST_LEAN_PX: f64 = 5.0;
 /// Spacing of the contours' points, pixels.
 const SPACING_PX: f64 = 1.0;
 /// Reach of the smoothing of the first outline and of the edges' places, mm; at least so many points.
@@ -221,10 +225,10 @@ fn enclosed(
         near.heights_mm[k] = near.heights_mm[k - 1] + gap;
     }
     let off = to_set(&near, |v| marrow[v], Within::Stack);
-    let half = (shares.dark + shares.outside) as f32 / 2.0;
+    let least = (shares.outside - DARK * (shares.outside - shares.dark)) as f32;
     let rim = 1.5 * pixel as f32;
     let reach = shell_mm as f32 + rim;
-    let shell = |v: usize| off[v] <= reach && sorting[v] < half * levels[v];
+    let shell = |v: usize| off[v] <= reach && sorting[v] < least * levels[v];
     let starts = (0..stack.voxels()).filter(|&v| off[v] > 0.0 && off[v] <= rim && shell(v));
     let solid = grow::reached(stack, shell, starts);
     let kept = between(stack, &off, &solid);
@@ -309,21 +313,21 @@ impl Job<'_> {
         let columns = self.stack.size[0];
         let [dx, dy] = self.stack.pixel_mm;
         let mut found = Found::default();
-        let (mut clear, mut all) = (0, 0);
+        let (mut unclear, mut all) = (0, 0);
         for ring in marching::contours(&self.shares_of_bone(k), columns, 0.5, 0.0) {
             if ring::signed_area(&ring).abs() < LEAST_AREA_PX2 {
                 continue;
             }
             let scaled: Vec<Plane> = ring.iter().map(|p| [p[0] * dx, p[1] * dy]).collect();
             let edges = self.edges(k, off, &smooth_outline(&scaled, dx.min(dy)));
-            clear += edges.clear;
+            unclear += edges.unclear;
             all += edges.points.len();
             let point = |(p, sigma): &(Plane, f64)| {
                 SlicePoint::rounded(p[0] / dx + offset[0], p[1] / dy + offset[1], *sigma)
             };
             found.rings.push(edges.points.iter().map(point).collect());
         }
-        found.unclear = all > 0 && (all - clear) as f64 > UNCLEAR * all as f64;
+        found.unclear = unclear as f64 > UNCLEAR * all as f64;
         found
     }
 
@@ -347,7 +351,7 @@ impl Job<'_> {
         let directions = normals(outline);
         let mut shifts = Vec::with_capacity(outline.len());
         let mut sigmas = Vec::with_capacity(outline.len());
-        let mut clear = 0;
+        let mut unclear = 0;
         let mut ray = Vec::new();
         for (p, n) in outline.iter().zip(&directions) {
             let px = |s: f64| [(p[0] + s * n[0]) / dx, (p[1] + s * n[1]) / dy];
@@ -364,7 +368,7 @@ impl Job<'_> {
                 pixel: 3.0_f64.sqrt() * width,
                 lean,
                 shell: self.shell_mm,
-                reach: 1.5 * width + lean / 2.0,
+                reach: 1.5 * width + (lean / 2.0).min(width),
             };
             let first = -(((self.shell_mm + 3.0 * width + lean) / step).ceil()) * step;
             let last = known.reach + 3.0 * width + lean;
@@ -372,11 +376,12 @@ impl Job<'_> {
             ray.extend(
                 (0..=((last - first) / step) as usize).map(|m| samples.at(px(first + m as f64 * step))),
             );
-            let edge = outside(&Profile { first, step, levels: &ray }, &known);
+            let leans = lean > MOST_LEAN_PX * pixel;
+            let edge = if leans { None } else { outside(&Profile { first, step, levels: &ray }, &known) };
+            unclear += usize::from(!leans && edge.is_none());
             // The outline itself is known too, though badly.
             let (shift, sigma) = match edge {
                 Some(edge) => {
-                    clear += 1;
                     let (a, b) = (edge.sigma.powi(-2), (outline_sigma + lean / 2.0).powi(-2));
                     (edge.at * a / (a + b), (a + b).sqrt().recip())
                 }
@@ -391,14 +396,14 @@ impl Job<'_> {
             std::array::from_fn(|a| outline[n][a] + directions[n][a] * smooth.values[n])
         };
         let points = (0..outline.len()).map(|n| (moved(n), smooth.sigmas[n])).collect();
-        Edges { points, clear }
+        Edges { points, unclear }
     }
 }
 
-/// A contour, mm in its slice, with standard deviations, and how many of its points have an edge.
+/// A contour, mm in its slice, with standard deviations, and how many of its points should have an edge and have none.
 struct Edges {
     points: Vec<(Plane, f64)>,
-    clear: usize,
+    unclear: usize,
 }
 
 /// An outline without the noise of single pixels, its points evenly spread.

@@ -83,8 +83,7 @@ pub(crate) fn shares(
                     ray[darkest..].iter().skip((1.5 * pixel / step) as usize).copied().collect();
                 beyond.truncate((BEYOND_MM / step) as usize);
                 beyond.sort_by(f64::total_cmp);
-                // The upper quartile: part of the way is still in the shell.
-                if let Some(&outside) = beyond.get(beyond.len() * 3 / 4) {
+                if let Some(&outside) = beyond.get(beyond.len() / 2) {
                     darks.push(ray[darkest]);
                     outsides.push(outside);
                 }
