@@ -62,7 +62,7 @@ impl Piece {
         let through_seam = closed && to < from && to >= 0.0;
         let last = if through_seam { to + end } else { to };
         let within = (0.0..=end).contains(&from) && last >= from;
-        let short = if closed { last - from <= end } else { last <= end };
+        let short = if closed { last <= from + end } else { last <= end };
         if within && short {
             Ok(Self { spline, from, to: last })
         } else {

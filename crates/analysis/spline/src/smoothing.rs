@@ -10,7 +10,8 @@
 //! Hoog, 1985); that of the smoother used twice is taken for what it is with even spacing. The minimum is looked for downhill from a width of
 //! four points, so among several the one next to that is taken.
 //!
-//! It is least squares: a point that is far off pulls the curve, unless its standard deviation says so.
+//! It is least squares: a point that is far off pulls the curve. One that is known to be wrong is best left out: a large standard deviation
+//! takes away its pull, but not the length of its chords from the parameter.
 
 use biplane_geometry::{Point2, Vector2};
 
@@ -57,8 +58,8 @@ pub enum Choice {
     /// that they are too small, by those (see [`Smoothed::sigma_factor`]).
     #[default]
     Risk,
-    /// The weighted sum of squared residuals is what the stated standard deviations let expect, given the degrees of freedom. The most used
-    /// rule, and the worst where these are wrong.
+    /// The weighted sum of squared residuals is what the stated standard deviations let expect, given the degrees of freedom: follows
+    /// the noise where these are too small, and flattens the curve where they are too large.
     Discrepancy,
     /// Generalised cross-validation (P. Craven and G. Wahba, 1979): the standard deviations need to be right up to a common factor alone.
     /// Follows noise that neighbours share, unless [`Smoothing::correlated_points`] tells of it.
@@ -103,7 +104,7 @@ pub struct Smoothed {
 impl Spline {
     /// Near the points, whose standard deviations across the curve are given (px; 0 for a point that the curve goes through).
     ///
-    /// Neighbours nearer than a thousandth of the mean distance are merged.
+    /// Neighbours nearer than a thousandth of the mean distance are merged. A standard deviation over 100 times the median counts as that.
     ///
     /// # Errors
     /// If a number is not finite or a standard deviation negative, or fewer than 2 points (3 of a closed curve) differ.
@@ -261,21 +262,11 @@ impl<'a> Smoother<'a> {
     /// Sum of the squares of the residuals across the curve by the variances in their unit, px^2.
     fn squares_across(&self) -> f64 {
         let (fitted, last) = (&self.fitted, self.fitted.len() - 1);
+        // Before the first, and after the last.
+        let around = if self.knots.closed { [last, 0] } else { [0, last] };
         let one = |k: usize| {
-            let before = if k > 0 {
-                k - 1
-            } else if self.knots.closed {
-                last
-            } else {
-                0
-            };
-            let after = if k < last {
-                k + 1
-            } else if self.knots.closed {
-                0
-            } else {
-                last
-            };
+            let before = if k > 0 { k - 1 } else { around[0] };
+            let after = if k < last { k + 1 } else { around[1] };
             let along = fitted[after] - fitted[before];
             let (square, across) = (along.norm_squared(), along.perp(&self.pulls[k]));
             if square > 0.0 { across * across / square * self.variances[k] } else { 0.0 }
@@ -428,4 +419,92 @@ fn least(limits: [f64; 2], start: f64, mut of: impl FnMut(f64) -> f64) -> f64 {
         }
     }
     here.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use rand::{Rng, SeedableRng};
+
+    /// Knots at uneven distances with uneven variances.
+    fn knots(count: usize, closed: bool) -> Knots {
+        let mut random = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(6);
+        let points: Vec<Point2> = (0..count)
+            .map(|k| {
+                let a = std::f64::consts::TAU * (k as f64 + random.random_range(-0.3..0.3)) / count as f64;
+                Point2::new(count as f64 * 0.16 * a.cos(), count as f64 * 0.2 * a.sin())
+            })
+            .collect();
+        let sigmas: Vec<f64> = (0..count).map(|_| random.random_range(0.5..2.0)).collect();
+        Knots::new(&points, Some(&sigmas), closed, SAME).unwrap()
+    }
+
+    /// The smoother as a full matrix, `(1 + w V Q R^-1 Q')^-1` (P. J. Green and B. W. Silverman, Nonparametric Regression and Generalized
+    /// Linear Models, 1994, section 2.1), `Q` and `R` written down here anew.
+    fn full(knots: &Knots, weight: f64) -> DMatrix<f64> {
+        let (n, h) = (knots.points.len(), &knots.chords);
+        let (mut q, mut r) = (DMatrix::<f64>::zeros(n, n), DMatrix::<f64>::zeros(n, n));
+        let inner: Vec<usize> = if knots.closed { (0..n).collect() } else { (1..n - 1).collect() };
+        for k in inner.iter().copied() {
+            let (before, after) = ((k + n - 1) % n, (k + 1) % n);
+            q[(before, k)] += 1.0 / h[before];
+            q[(k, k)] -= 1.0 / h[before] + 1.0 / h[k];
+            q[(after, k)] += 1.0 / h[k];
+            r[(k, k)] += (h[before] + h[k]) / 3.0;
+            r[(before, k)] += h[before] / 6.0;
+            r[(after, k)] += h[k] / 6.0;
+        }
+        let (q, r) = (q.select_columns(&inner), r.select_columns(&inner).select_rows(&inner));
+        let bending: DMatrix<f64> = &q * r.try_inverse().unwrap() * q.transpose();
+        let variances = DMatrix::from_diagonal(&DVector::from_vec(knots.variances.clone()));
+        let more: DMatrix<f64> = variances * bending * weight;
+        (DMatrix::identity(n, n) + more).try_inverse().unwrap()
+    }
+
+    #[test]
+    fn the_fit_is_that_of_full_matrices() {
+        for (count, closed) in
+            [(3, true), (4, true), (5, true), (20, true), (3, false), (4, false), (20, false)]
+        {
+            let knots = knots(count, closed);
+            let mut smoother = Smoother::new(&knots, 1.0, Smoothing::default());
+            for weight in [0.01, 1.0, 300.0] {
+                smoother.fit(weight).unwrap();
+                let once = full(&knots, weight);
+                let twice = &once * 2.0 - &once * &once;
+                for k in 0..count {
+                    let fitted: Vector2 = (0..count).map(|j| knots.points[j] * twice[(k, j)]).sum();
+                    assert!((smoother.fitted[k] - fitted).norm() < 1e-9, "{count} {closed} {weight}");
+                    assert!((smoother.leverage[k] - once[(k, k)]).abs() < 1e-9, "{count} {closed} {weight}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn degrees_of_freedom_of_smoothing_twice_are_near_the_exact_ones() {
+        for closed in [true, false] {
+            let knots = knots(200, closed);
+            let mut smoother = Smoother::new(&knots, 1.0, Smoothing::default());
+            for width in [2.0_f64, 4.0, 8.0, 16.0] {
+                let score = smoother.fit(width.powi(4)).unwrap();
+                let once = full(&knots, width.powi(4));
+                let exact = (&once * 2.0 - &once * &once).trace();
+                println!("width {width}: {:.1} for {exact:.1}", score.freedom);
+                assert!((score.freedom / exact - 1.0).abs() < 0.05);
+            }
+        }
+    }
+
+    #[test]
+    fn the_least_of_a_function_is_found_on_either_side_and_at_the_limits() {
+        let find = |at: f64| least([-4.0, 9.0], 2.0, |x| (x - at).powi(2) + 0.1 * (x - at).powi(4));
+        for at in [-2.3, 1.9, 2.0, 2.4, 6.7] {
+            assert!((find(at) - at).abs() < 0.05, "{at}: {}", find(at));
+        }
+        assert_eq!((find(-20.0), find(30.0)), (-4.0, 9.0));
+        // Where nothing can be computed it stays.
+        assert_eq!(least([-4.0, 9.0], 2.0, |_| f64::NAN), 2.0);
+    }
 }

@@ -65,6 +65,93 @@ fn a_spline_goes_through_its_points() {
 }
 
 #[test]
+fn values_are_those_of_scipy() {
+    // scipy 1.17.1: CubicSpline(t, points, bc_type="natural") and "periodic", t the cumulative chord length; value and both derivatives.
+    let points =
+        [(0.0, 0.0), (3.0, 4.0), (3.0, 10.0), (-5.0, 16.0), (-11.0, 8.0)].map(|(x, y)| Point2::new(x, y));
+    let expected = [
+        (
+            false,
+            2.0,
+            [
+                1.3726590538336052,
+                1.5150407830342576,
+                0.6534420880913541,
+                0.7737030995106037,
+                -0.04933115823817291,
+                0.024274061990212148,
+            ],
+        ),
+        (
+            false,
+            9.5,
+            [
+                3.4644066068515498,
+                8.458982463295268,
+                -0.20181484502446978,
+                1.0338295269168025,
+                -0.14168026101141928,
+                -0.0017128874388254722,
+            ],
+        ),
+        (
+            false,
+            26.25,
+            [
+                -8.560431382544861,
+                13.052895799347471,
+                -0.563944942903752,
+                -0.910062805872757,
+                0.03180097879282217,
+                -0.09707667210440454,
+            ],
+        ),
+        (
+            true,
+            2.0,
+            [
+                1.4981386015793738,
+                1.2374291034347027,
+                0.6520710719749044,
+                0.7820585721739184,
+                -0.09858576551145505,
+                0.1350193171666996,
+            ],
+        ),
+        (
+            true,
+            9.5,
+            [
+                3.4127676168790306,
+                8.511108476837277,
+                -0.17812561276872899,
+                0.9985502554748634,
+                -0.12703632624539796,
+                -0.0063912728034279725,
+            ],
+        ),
+        (
+            true,
+            26.25,
+            [
+                -9.517036337611845,
+                13.03272912007674,
+                -0.6518640852455879,
+                -0.9149312040052187,
+                0.1128158801141337,
+                -0.09524785601937368,
+            ],
+        ),
+    ];
+    for (closed, t, [x, y, dx, dy, ddx, ddy]) in expected {
+        let spline = Spline::through(&points, closed).unwrap();
+        assert!((spline.point(t) - Point2::new(x, y)).norm() < 1e-12);
+        assert!((spline.derivative(t) - Vector2::new(dx, dy)).norm() < 1e-12);
+        assert!((spline.second_derivative(t) - Vector2::new(ddx, ddy)).norm() < 1e-12);
+    }
+}
+
+#[test]
 fn two_derivatives_are_the_same_on_both_sides_of_knots_and_seam() {
     for spline in splines(2) {
         let end = spline.end();
@@ -305,6 +392,12 @@ fn a_trusted_part_may_run_through_the_seam_and_not_further() {
     assert!(finder.closest(&points[0]).unwrap().distance < 1e-12);
     assert!(finder.closest(&points[25]).unwrap().distance > 5.0);
     assert!(!piece.is_loop() && Piece::whole(spline.clone()).is_loop());
+    for k in 1..50 {
+        // Once round from any point.
+        let from = spline.parameters()[k];
+        let round = Piece::new(spline.clone(), from, from + end).unwrap();
+        assert!(FootFinder::new(&[round]).closest(&points[k / 2]).unwrap().distance < 1e-12);
+    }
     assert!(matches!(Piece::new(spline.clone(), 1.0, end + 2.0), Err(PieceError::Outside { .. })));
     assert!(matches!(Piece::new(spline.clone(), f64::NAN, 1.0), Err(PieceError::Outside { .. })));
     assert!(matches!(Piece::between_points(spline, 3, 50), Err(PieceError::NoSuchPoint { count: 50, .. })));
