@@ -6,7 +6,7 @@
 //! and within 0.01 px of it. A body that the file does not speak of is not in the answer; one whose layer is empty is, with
 //! no pieces. Not guaranteed: that a piece lies on an edge, or that it does not cross itself.
 
-mod along;
+mod chain;
 mod drawing;
 mod named;
 mod place;

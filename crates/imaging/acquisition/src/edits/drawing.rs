@@ -12,7 +12,7 @@ use std::path::Path;
 use biplane_artifact::{ContentHash, EditedContour};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::along::{Chain, distance};
+use super::chain::{Chain, distance};
 use super::named::{alike, body_of, known};
 use super::place::{Affine, Box2, Pair, length};
 use super::shapes;
@@ -395,7 +395,7 @@ impl<'a> Reader<'a> {
                 return Err(self.at(node, format!("{what}. Move it into the layer of its body (Layer > Move Selection to Layer), or delete it")));
             }
         };
-        let mark = mark_of(node);
+        let mark = mark_of(node, self.bodies);
         let chains = chains.iter().map(|c| c.mapped(&state.root_from_own)).collect();
         self.drawn.push(Drawn { node, body, chains, mark });
         Ok(())
@@ -519,15 +519,19 @@ impl<'a> Reader<'a> {
         let mut lines: Vec<(String, Node<'a, 'a>, Line)> = Vec::new();
         for one in drawn.iter().filter(|d| d.mark.is_none()) {
             let name = name_of(one.node).map_or_else(
-                || format!("{} of line {}", called(one.node), self.line(one.node)),
+                || format!("{} of line {}", one.node.tag_name().name(), self.line(one.node)),
                 str::to_owned,
             );
             for chain in &one.chains {
-                let points = chain.points(*left).ok_or_else(|| {
-                    let what = format!("it is too long (a file may have {MAX_POINTS} px of curves in all), or far from the picture; delete it");
-                    self.at(one.node, what)
+                let points = chain.points().map_err(|e| {
+                    self.at(
+                        one.node,
+                        format!("it is not of the size of a picture ({e}); delete it, or draw it anew"),
+                    )
                 })?;
-                *left = left.saturating_sub(points.len());
+                *left = left.checked_sub(points.len()).ok_or_else(|| {
+                    self.at(one.node, format!("with it the file has more than {MAX_POINTS} px of curves; delete what is no outline"))
+                })?;
                 lines.push((name.clone(), one.node, Line { points, closed: chain.closed }));
             }
         }
@@ -583,8 +587,9 @@ impl Drawn<'_> {
     }
 }
 
-/// The end of a trusted part that an element marks: as it was written, or a circle named `<piece> from` or `<piece> to`.
-fn mark_of(node: Node<'_, '_>) -> Option<(String, End)> {
+/// The piece whose trusted part an element marks, and which end of it: as it was written, or by its name `<piece> from` or
+/// `<piece> to`, where that is a circle or the piece is named after a body (programs forget what was written).
+fn mark_of(node: Node<'_, '_>, bodies: &[&str]) -> Option<(String, End)> {
     let end = |word: &str| match word {
         "from" => Some(End::From),
         "to" => Some(End::To),
@@ -593,12 +598,9 @@ fn mark_of(node: Node<'_, '_>) -> Option<(String, End)> {
     if let (Some(word), Some(of)) = (own(node, "mark"), own(node, "of")) {
         return Some((of.to_owned(), end(word)?));
     }
-    if !matches!(node.tag_name().name(), "circle" | "ellipse") {
-        return None;
-    }
-    let name = name_of(node)?;
-    let (of, word) = name.rsplit_once([' ', '_', '-'])?;
-    Some((of.to_owned(), end(word)?))
+    let (of, word) = name_of(node)?.rsplit_once([' ', '_', '-'])?;
+    let round = matches!(node.tag_name().name(), "circle" | "ellipse");
+    (round || body_of(of, bodies).is_some()).then_some((of.to_owned(), end(word)?))
 }
 
 /// The centre of the box around nodes: of a circle, however it is written, its own.

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use svgtypes::{PathParser, PathSegment, PointsParser};
 
-use super::along::Chain;
+use super::chain::Chain;
 use super::place::Pair;
 
 /// The chains of an attribute `d`, one a subpath; lone moves are left out.

@@ -9,8 +9,10 @@
 use std::path::Path;
 
 use biplane_artifact::{Content, ContentHash, EditedContour};
+use biplane_geometry::Point2;
+use biplane_spline::{Piece, Spline};
 
-use super::along::{Chain, distance, through};
+use super::chain::{Chain, distance};
 use super::named::{body_of, known};
 use super::place::Pair;
 use super::trusted::Line;
@@ -84,14 +86,19 @@ pub(super) fn read(path: &Path, text: &str, bodies: &[&str], size: [usize; 2]) -
         for rows in pieces {
             let (name, line) = (rows.name, rows.line);
             let before = contour.pieces.len();
-            for stretch in rows.stretches() {
-                let points = stretch.points(left).ok_or_else(|| {
-                    let what = format!(
-                        "piece {} is too long (a file may have {MAX_POINTS} px of curves in all); expected pixels of the picture", quote(name)
-                    );
-                    EditError::Line { path: path.to_owned(), line, what }
+            let fault = |what: String| EditError::Line {
+                path: path.to_owned(),
+                line,
+                what: format!(
+                    "piece {}: {what}; expected pixels of the picture in the order of the outline",
+                    quote(name)
+                ),
+            };
+            for stretch in rows.stretches().map_err(fault)? {
+                let points = stretch.points().map_err(|e| fault(e.to_string()))?;
+                left = left.checked_sub(points.len()).ok_or_else(|| {
+                    fault(format!("with it the file has more than {MAX_POINTS} px of curves"))
                 })?;
-                left = left.saturating_sub(points.len());
                 let parts = Line { points, closed: stretch.closed }.within(size);
                 contour.pieces.extend(parts.into_iter().filter_map(|p| p.piece(name)));
             }
@@ -125,8 +132,8 @@ fn yes_or_no(
 }
 
 impl Rows<'_> {
-    /// The trusted stretches of a smooth curve through the points.
-    fn stretches(mut self) -> Vec<Chain> {
+    /// The trusted stretches of the spline through the points.
+    fn stretches(mut self) -> Result<Vec<Chain>, String> {
         let meets = |p: &[Pair]| {
             p.len() > 3 && p.first().zip(p.last()).is_some_and(|(a, b)| distance(*a, *b) <= CLOSES_PX)
         };
@@ -135,36 +142,22 @@ impl Rows<'_> {
             self.points.pop();
             self.trusted.pop();
         }
-        // A point given twice has no direction; it is trusted if both are.
-        let mut kept: Vec<(Pair, bool)> = Vec::with_capacity(self.points.len());
-        for (point, trusted) in self.points.iter().zip(&self.trusted) {
-            match kept.last_mut() {
-                Some((last, both)) if distance(*last, *point) < 1e-9 => *both &= trusted,
-                _ => kept.push((*point, *trusted)),
-            }
+        let points: Vec<Point2> = self.points.iter().map(|p| Point2::from(*p)).collect();
+        let spline = Spline::through(&points, self.closed).map_err(|e| e.to_string())?;
+        if self.trusted.iter().all(|t| *t) {
+            return Ok(Chain::of(&Piece::whole(spline).beziers(), self.closed).into_iter().collect());
         }
-        let places: Vec<Pair> = kept.iter().map(|(p, _)| *p).collect();
-        let Some(whole) = through(&places, self.closed) else { return Vec::new() };
-        if kept.iter().all(|(_, trusted)| *trusted) {
-            return vec![whole];
-        }
-        let count = kept.len();
-        let trusted = |i: usize| kept.get(i % count).is_some_and(|(_, t)| *t);
-        // Begun at a point that is not trusted, no stretch of a closed curve runs through the seam.
-        let first = if whole.closed { (0..count).find(|i| !trusted(*i)).unwrap_or(0) } else { 0 };
-        let mut stretches: Vec<Chain> = Vec::new();
-        let mut open: Option<Chain> = None;
-        for i in (first..first + whole.cubics.len()).map(|i| i % count) {
-            if trusted(i) && trusted(i + 1) {
-                let from = places.get(i).copied().unwrap_or(whole.start);
-                let chain = open.get_or_insert_with(|| Chain::new(from));
-                chain.cubics.extend(whole.cubics.get(i));
-            } else {
-                stretches.extend(open.take());
-            }
-        }
-        stretches.extend(open);
-        stretches
+        let count = points.len();
+        // Begun at a point that is not trusted, no stretch of a closed curve runs through the seam unseen.
+        let first = if self.closed { self.trusted.iter().position(|t| !t).unwrap_or(0) } else { 0 };
+        let places: Vec<usize> = (first..first + count).map(|i| i % count).collect();
+        let runs = places.split(|i| !self.trusted[*i]).filter(|run| run.len() > 1);
+        let chain = |run: &[usize]| {
+            let piece = Piece::between_points(spline.clone(), run[0], run[run.len() - 1])
+                .map_err(|e| e.to_string())?;
+            Ok(Chain::of(&piece.beziers(), false))
+        };
+        runs.map(chain).filter_map(Result::transpose).collect()
     }
 }
 

@@ -7,16 +7,22 @@
 use std::fmt::Write;
 
 use biplane_artifact::ContentHash;
+use biplane_geometry::Point2;
+use biplane_spline::{Choice, Piece, Smoothing, Spline};
 
 use super::VERSION;
-use super::along::{Chain, through};
+use super::chain::Chain;
 use super::named::id_of;
 use super::place::Pair;
 
 /// Namespace of this program's attributes.
 pub(super) const NAMESPACE: &str = "urn:biplane:edit";
-/// Distance of the nodes of a path, px.
-const NODES_PX: usize = 20;
+/// Distance of the nodes of a path at most, px.
+const NODES_PX: f64 = 40.0;
+/// Distance of a path from the smooth curve near the points at most, px.
+const PATH_PX: f64 = 0.05;
+/// Points that share one error: neighbours of a picture that was smoothed by a Gaussian of 1 px.
+const CORRELATED_POINTS: f64 = 3.5;
 /// Radius of a mark, px.
 const MARK_PX: f64 = 2.5;
 
@@ -55,6 +61,8 @@ pub struct SketchBody {
 pub struct SketchPiece {
     /// In order, about a pixel apart, px.
     pub points: Vec<[f64; 2]>,
+    /// Standard deviation of each across the edge, px: the path that is written is as smooth as they let it be.
+    pub sigmas: Vec<f64>,
     /// Whether the last point is followed by the first; all of it is trusted then.
     pub closed: bool,
     /// The first and the last trusted point.
@@ -149,15 +157,12 @@ fn layer(body: &SketchBody) -> String {
     out + &inner + "  </g>\n"
 }
 
-/// A piece as a path with few nodes.
+/// A piece as a path with few nodes; `None` where its points are no curve.
 fn nodes(piece: &SketchPiece) -> Option<Chain> {
-    let last = piece.points.len().checked_sub(1)?;
-    let few = piece
-        .points
-        .iter()
-        .enumerate()
-        .filter(|(i, _)| i % NODES_PX == 0 && i + NODES_PX / 2 <= last || *i == last);
-    through(&few.map(|(_, p)| *p).collect::<Vec<Pair>>(), piece.closed)
+    let points: Vec<Point2> = piece.points.iter().map(|p| Point2::from(*p)).collect();
+    let how = Smoothing { choice: Choice::Risk, correlated_points: CORRELATED_POINTS };
+    let smooth = Spline::near(&points, &piece.sigmas, piece.closed, how).ok()?;
+    Chain::of(&Piece::whole(smooth.spline).fewer_beziers(NODES_PX, PATH_PX).curves, piece.closed)
 }
 
 /// A chain as the attribute `d`.
