@@ -207,13 +207,13 @@ fn a_moved_a_deleted_and_a_drawn_piece_of_inkscape() {
     assert!(edit.bodies.iter().all(|b| b.touched));
     let [moved] = &edit.bodies[0].contour.pieces[..] else { panic!("the second one was deleted") };
     // Smooth curves run less exactly at their very ends, which are not trusted as written.
-    assert_on_circle(moved, [115.0, 93.0], 60.0, 0.1);
+    assert_on_circle(moved, [115.0, 93.0], 60.0, 0.15);
     // The first mark stayed at (163.584, 116.995): the closest point of the moved circle. The other one was dragged beyond the end.
     let [from, to] = ends(moved);
     let (x, y) = (163.584 - 115.0, 116.995 - 93.0);
     assert_near(from, [115.0 + 60.0 * x / f64::hypot(x, y), 93.0 + 60.0 * y / f64::hypot(x, y)], 0.06);
     let end = *sketch().bodies[0].pieces[0].points.last().unwrap();
-    assert_near(to, [end[0] + 5.0, end[1] + 3.0], 0.1);
+    assert_near(to, [end[0] + 5.0, end[1] + 3.0], 0.15);
     let [_, drawn] = &edit.bodies[1].contour.pieces[..] else { panic!("one was drawn") };
     assert_eq!(ends(drawn), [[40.0, 20.0], [90.0, 50.0]]);
     // de Casteljau at one half: (70, 20), (80, 20), (90, 30), (90, 40).
