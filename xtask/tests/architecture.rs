@@ -18,7 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-artifact"],
     &["biplane-stage"],
     &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
-    &["biplane-outline"],
+    &["biplane-edge-field", "biplane-outline"],
     &[
         "biplane-acquisition",
         "biplane-spots",
@@ -38,7 +38,7 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 14] = [
+const METHOD: [&str; 15] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
@@ -49,6 +49,7 @@ const METHOD: [&str; 14] = [
     "crates/analysis/spline",
     "crates/analysis/spots",
     "crates/matching/contour",
+    "crates/matching/edge-field",
     "crates/matching/fluoroscope",
     "crates/matching/outline",
     "crates/matching/optimisation",

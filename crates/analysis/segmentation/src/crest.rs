@@ -286,7 +286,7 @@ fn mark(rows: &Rows, [low, high]: [f32; 2], marks: &mut [u8]) {
         let level = (m >= left[x]) & (m > right[x]);
         let steep = along_y[x].abs() > along_x[x].abs();
         let owns = (m >= low) & ((steep & upright) | (!steep & level));
-        marks[x] = u8::from(owns) * CANDIDATE | u8::from(owns & (m >= high)) * STRONG;
+        marks[x] = (u8::from(owns) * CANDIDATE) | (u8::from(owns & (m >= high)) * STRONG);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{Artifact, Content, ContentHash, ContentHasher, DecodeError};
 /// The part of one view's [`crate::Curves`] that lies on the outline of one body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contour {
-    /// In the order of the outline.
+    /// By curve.
     pub pieces: Vec<ContourPiece>,
     /// Length of the outline within the picture, px.
     pub outline_px: f64,

@@ -20,7 +20,6 @@
 
 mod bingham;
 mod consistency;
-mod field;
 mod judge;
 mod refine;
 mod stage;
@@ -29,8 +28,8 @@ mod starts;
 pub use bingham::{
     BinghamParams, BinghamView, Contour, Descent, best, descend, match_bingham, own_contour, spread,
 };
+pub use biplane_edge_field::EdgeField;
 pub use consistency::{Disagreement, disagreement, pose_covariance_of_calibration};
-pub use field::EdgeField;
 pub use judge::{Limits, judge};
 pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};
 pub use stage::{Contrast, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_body};

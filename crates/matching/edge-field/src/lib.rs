@@ -9,10 +9,21 @@ const CELL_PX: f64 = 8.0;
 /// Cells along x or y at most: edge points far outside any picture fall into the last cell.
 const MAX_CELLS: f64 = 2048.0;
 
+/// Where an edge point is among the curves of its frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EdgePlace {
+    /// Number of the curve.
+    pub curve: u32,
+    /// Number of the point in it.
+    pub point: u32,
+}
+
 /// Edge points of one view in ideal pixels.
 #[derive(Debug, Clone)]
 pub struct EdgeField {
     points: Vec<EdgePoint>,
+    /// Where each point is among the curves.
+    places: Vec<EdgePlace>,
     cell_start: Vec<u32>,
     first: Point2,
     cells: [usize; 2],
@@ -22,13 +33,16 @@ impl EdgeField {
     /// From the curves of a frame, corrected for distortion if there is any.
     pub fn new(curves: &Curves, distortion: Option<&Distortion>) -> Self {
         let mut points = Vec::with_capacity(curves.point_count());
-        for curve in &curves.0 {
-            match distortion {
-                Some(d) => points.extend(d.correct(curve).points),
-                None => points.extend_from_slice(&curve.points),
+        let mut places = Vec::with_capacity(curves.point_count());
+        for (number, curve) in curves.0.iter().enumerate() {
+            let corrected = distortion.map(|d| d.correct(curve));
+            for (point, p) in corrected.as_ref().unwrap_or(curve).points.iter().enumerate() {
+                if p.position.coords.iter().chain(p.direction.iter()).all(|v| v.is_finite()) {
+                    points.push(*p);
+                    places.push(EdgePlace { curve: number as u32, point: point as u32 });
+                }
             }
         }
-        points.retain(|p| p.position.coords.iter().chain(p.direction.iter()).all(|v| v.is_finite()));
         let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
         for p in &points {
             low = low.inf(&p.position.coords);
@@ -40,6 +54,7 @@ impl EdgeField {
         let count = |span: f64| (span / CELL_PX + 1.0).clamp(1.0, MAX_CELLS) as usize;
         let mut field = Self {
             points: Vec::new(),
+            places: Vec::new(),
             cell_start: Vec::new(),
             first: Point2::from(low),
             cells: [count(high.x - low.x), count(high.y - low.y)],
@@ -55,7 +70,8 @@ impl EdgeField {
         }
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(|&k| index[k]);
-        field.points = order.into_iter().map(|k| points[k]).collect();
+        field.points = order.iter().map(|&k| points[k]).collect();
+        field.places = order.iter().map(|&k| places[k]).collect();
         field
     }
 
@@ -108,6 +124,31 @@ impl EdgeField {
         }
         best
     }
+
+    /// All edge points within `radius` px whose direction has at least `min_cosine` with `direction`, with their places.
+    pub fn within(
+        &self,
+        at: &Point2,
+        direction: &Vector2,
+        radius: f64,
+        min_cosine: f64,
+        mut found: impl FnMut(EdgePlace, &EdgePoint),
+    ) {
+        let corner = |sign: f64| at + Vector2::repeat(sign * radius);
+        let [first, last] = [corner(-1.0), corner(1.0)].map(|p| [self.cell(&p, 0), self.cell(&p, 1)]);
+        for y in first[1]..=last[1] {
+            let row = y * self.cells[0];
+            let span = self.cell_start[row + first[0]]..self.cell_start[row + last[0] + 1];
+            for k in span.start as usize..span.end as usize {
+                let p = &self.points[k];
+                if (p.position - at).norm_squared() < radius * radius
+                    && p.direction.dot(direction) >= min_cosine
+                {
+                    found(self.places[k], p);
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -144,6 +185,14 @@ mod tests {
                 .filter(|p| p.direction.dot(&direction) >= 0.8 && (p.position - at).norm() < radius)
                 .min_by(|a, b| (a.position - at).norm().total_cmp(&(b.position - at).norm()));
             assert_eq!(field.nearest(&at, &direction, radius, 0.8), expected);
+            let mut all = 0;
+            field.within(&at, &direction, radius, 0.8, |place, p| {
+                assert_eq!(points[place.point as usize], *p);
+                all += 1;
+            });
+            let near =
+                |p: &&EdgePoint| p.direction.dot(&direction) >= 0.8 && (p.position - at).norm() < radius;
+            assert_eq!(all, points.iter().filter(near).count());
             found += usize::from(expected.is_some());
         }
         assert!(found > 500);
