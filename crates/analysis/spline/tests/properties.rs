@@ -272,9 +272,9 @@ fn arc_length_is_that_of_a_circle_and_of_a_fine_sum() {
             }
             sum
         };
-        let (coarse, fine) = (sum(100), sum(200));
+        let (coarse, fine) = (sum(1000), sum(2000));
         let extrapolated = fine + (fine - coarse) / 3.0;
-        assert!((length.total() / extrapolated - 1.0).abs() < 1e-8, "{} {extrapolated}", length.total());
+        assert!((length.total() / extrapolated - 1.0).abs() < 1e-9, "{} {extrapolated}", length.total());
         for share in [0.0, 0.1, 0.5, 0.77, 1.0] {
             let wanted = share * length.total();
             let t = length.parameter(wanted);
