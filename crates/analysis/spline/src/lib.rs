@@ -16,7 +16,9 @@ mod bezier;
 mod cubic;
 mod foot;
 mod knots;
+mod minimum;
 mod piece;
+mod scatter;
 mod smoothing;
 mod spline;
 

@@ -18,26 +18,22 @@ use biplane_geometry::{Point2, Vector2};
 use crate::Spline;
 use crate::band::{Band, Factors};
 use crate::knots::{Knots, PointsError};
+use crate::minimum::least;
+use crate::scatter::noise_factor;
 use crate::spline::Roughness;
 
 /// Points nearer to each other than this share of the mean distance are merged: noise along the curve can bring them together.
 const SAME: f64 = 1e-3;
 /// Powers of two in which the smallest and the first width lie to the mean distance of points. At the smallest the curve goes through them.
 const WIDTHS: [f64; 2] = [-4.0, 2.0];
-/// Steps of the parabola to the minimum of the criterion.
-const REFINEMENTS: usize = 2;
 /// Trace of the smoother used twice, `2 A - A^2`, by that of `A`: for points evenly spaced `A` keeps `1 / (1 + x^4)` of a wave, whose
 /// square has three quarters of its integral.
 const TWICE: f64 = 1.25;
-/// Median of the square of a standard normal number.
-const MEDIAN: f64 = 0.4549;
 /// A variance that is as good as none, px^2.
 const NO_NOISE: f64 = 1e-100;
 /// A variance that says as good as nothing, in those of most points: larger ones count as this one, so that the equations keep their
 /// precision.
 const NOTHING: f64 = 1e4;
-/// Fewest points whose own differences tell their noise.
-const FEWEST: usize = 16;
 
 /// How the smoothing weight is chosen.
 ///
@@ -338,89 +334,6 @@ fn form(row: &[(Option<usize>, f64); 3], inverse: &[[f64; 3]]) -> f64 {
     sum
 }
 
-/// Square of the factor by which points scatter across the curve more than stated: from the cubic through four points, whose third
-/// difference is noise alone where the curve is smooth. The points are `apart` places from each other, so that they share no noise. The
-/// median over all of them, so corners and stray points count for little.
-fn noise_factor(knots: &Knots, apart: usize) -> f64 {
-    let count = knots.points.len();
-    let reach = apart.saturating_mul(3);
-    if count < FEWEST.saturating_add(reach) {
-        return 1.0;
-    }
-    let mut t = vec![0.0];
-    for k in 0..count + reach {
-        t.push(t[k] + knots.chords[k % knots.chords.len()]);
-    }
-    let windows = if knots.closed { count } else { count - reach };
-    let mut sizes = Vec::with_capacity(windows);
-    for first in 0..windows {
-        let at: [usize; 4] = std::array::from_fn(|k| first + k * apart);
-        let point = |k: usize| knots.points[at[k] % count];
-        let (mut sum, mut variance) = (Vector2::zeros(), 0.0);
-        for j in 0..4 {
-            let others = (0..4).filter(|k| *k != j).map(|k| t[at[j]] - t[at[k]]);
-            let c = 1.0 / others.product::<f64>();
-            sum += (point(j) - point(0)) * c;
-            variance += c * c * knots.variances[at[j] % count];
-        }
-        let along = point(3) - point(0);
-        let (square, across) = (along.norm_squared(), along.perp(&sum));
-        if variance > 0.0 && square > 0.0 {
-            sizes.push(across * across / (square * variance));
-        }
-    }
-    if sizes.len() < FEWEST {
-        return 1.0;
-    }
-    let middle = sizes.len() / 2;
-    let factor = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN;
-    if factor.is_finite() { factor } else { 1.0 }
-}
-
-/// Where a function is least within limits: downhill from a start in steps of 1, then along parabolas.
-fn least(limits: [f64; 2], start: f64, mut of: impl FnMut(f64) -> f64) -> f64 {
-    let mut here = (start, of(start));
-    let mut after = (start + 1.0, of(start + 1.0));
-    let mut before = (start - 1.0, f64::INFINITY);
-    if after.1 < here.1 {
-        while after.1 < here.1 && after.0 + 1.0 <= limits[1] {
-            (before, here) = (here, after);
-            let next = here.0 + 1.0;
-            after = (next, of(next));
-        }
-    } else {
-        before.1 = of(before.0);
-        while before.1 < here.1 && before.0 - 1.0 >= limits[0] {
-            (after, here) = (here, before);
-            let next = here.0 - 1.0;
-            before = (next, of(next));
-        }
-    }
-    // At a limit.
-    if let Some(end) = [before, after].into_iter().find(|e| e.1 < here.1) {
-        return end.0;
-    }
-    for _ in 0..REFINEMENTS {
-        let (left, right) = (here.0 - before.0, after.0 - here.0);
-        let (fall, rise) = ((here.1 - before.1) / left, (after.1 - here.1) / right);
-        let vertex = 0.5 * (before.0 + here.0) - 0.5 * fall * (left + right) / (rise - fall);
-        // Neither flat nor next to what is known.
-        if !(vertex > before.0 && vertex < after.0) || (vertex - here.0).abs() < 0.01 {
-            break;
-        }
-        let new = (vertex, of(vertex));
-        if new.1 < here.1 {
-            (before, after) = if new.0 < here.0 { (before, here) } else { (here, after) };
-            here = new;
-        } else if new.0 < here.0 {
-            before = new;
-        } else {
-            after = new;
-        }
-    }
-    here.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -495,16 +408,5 @@ mod tests {
                 assert!((score.freedom / exact - 1.0).abs() < 0.05);
             }
         }
-    }
-
-    #[test]
-    fn the_least_of_a_function_is_found_on_either_side_and_at_the_limits() {
-        let find = |at: f64| least([-4.0, 9.0], 2.0, |x| (x - at).powi(2) + 0.1 * (x - at).powi(4));
-        for at in [-2.3, 1.9, 2.0, 2.4, 6.7] {
-            assert!((find(at) - at).abs() < 0.05, "{at}: {}", find(at));
-        }
-        assert_eq!((find(-20.0), find(30.0)), (-4.0, 9.0));
-        // Where nothing can be computed it stays.
-        assert_eq!(least([-4.0, 9.0], 2.0, |_| f64::NAN), 2.0);
     }
 }
