@@ -37,6 +37,8 @@ const MOST_MARROW: f64 = 0.5;
 const LEAST_CONTRAST: f64 = 0.1;
 /// A voxel is dark from this share of the shell's contrast on: of a shell thinner than a slice that leans there is no more.
 const DARK: f64 = 0.35;
+/// Part of a slice's thickness over which marrow may fade before the shell is dark.
+const SPREAD: f64 = 0.75;
 /// A surface that a slice spreads over more pixels than this has no edge in it.
 const MOST_LEAN_PX: f64 = 5.0;
 /// Spacing of the contours' points, pixels.
@@ -229,7 +231,11 @@ fn enclosed(
     let rim = 1.5 * pixel as f32;
     let reach = shell_mm as f32 + rim;
     let shell = |v: usize| off[v] <= reach && sorting[v] < least * levels[v];
-    let starts = (0..stack.voxels()).filter(|&v| off[v] > 0.0 && off[v] <= rim && shell(v));
+    // Across a thick slice a leaning surface goes from bright to dark over a part of its thickness.
+    let first: Vec<f32> =
+        (0..stack.size[2]).map(|k| rim.max((SPREAD * stack.thickness_mm(k)) as f32)).collect();
+    let starts =
+        (0..stack.voxels()).filter(|&v| off[v] > 0.0 && off[v] <= first[v / stack.slice_voxels()] && shell(v));
     let solid = grow::reached(stack, shell, starts);
     let kept = between(stack, &off, &solid);
     let open = |v: usize| !(marrow[v] || kept[v]);
