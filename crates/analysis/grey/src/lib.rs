@@ -29,8 +29,7 @@ pub struct Grey {
 impl Grey {
     /// The samples of a frame, 0..255 whatever its bits. The frame holds `width * height` samples.
     pub fn of(frame: &Frame) -> Self {
-        let full = f64::from((1_u32 << frame.bits.clamp(1, 16)) - 1);
-        let scale = (255.0 / full) as f32;
+        let scale = scale(frame);
         let samples = frame.samples.iter().map(|&s| f32::from(s) * scale).collect();
         Self { width: frame.width, height: frame.height, samples }
     }
@@ -53,6 +52,24 @@ impl Grey {
         let above = sample(i, j) * (1.0 - fx) + sample(k, j) * fx;
         let below = sample(i, l) * (1.0 - fx) + sample(k, l) * fx;
         above * (1.0 - fy) + below * fy
+    }
+}
+
+/// What brings a frame's samples to 0..255.
+fn scale(frame: &Frame) -> f32 {
+    let full = f64::from((1_u32 << frame.bits.clamp(1, 16)) - 1);
+    (255.0 / full) as f32
+}
+
+/// Writes a row of a frame's samples, scaled to 0..255.
+fn scaled_rows(frame: &Frame) -> impl Fn(usize, &mut [f32]) {
+    let scale = scale(frame);
+    #[inline(always)]
+    move |y, out| {
+        let row = &frame.samples[y * frame.width..(y + 1) * frame.width];
+        for (o, s) in out.iter_mut().zip(row) {
+            *o = f32::from(*s) * scale;
+        }
     }
 }
 

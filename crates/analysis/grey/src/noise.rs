@@ -4,7 +4,10 @@
 //! X-rays are counted, so noise grows with the level, by a law that a camera's look-up table may have bent: it is measured in
 //! 16 classes of level. **Not guaranteed:** noise that neighbouring pixels share, which the mask does not see.
 
-use crate::Grey;
+use biplane_artifact::Frame;
+use pulp::Arch;
+
+use crate::{Grey, scaled_rows};
 
 /// Classes of level.
 const CLASSES: usize = 16;
@@ -47,31 +50,55 @@ fn deviation(sizes: &mut [f32]) -> f64 {
     f64::from(*median) / 6.0 / 0.6745
 }
 
+impl Noise {
+    /// Of a frame. Places where the mask is exactly 0 (saturated, or outside the intensifier) do not count.
+    pub fn of(frame: &Frame) -> Self {
+        measure([frame.width, frame.height], scaled_rows(frame))
+    }
+}
+
 impl Grey {
     /// Its noise. Places where the mask is exactly 0 (saturated, or outside the intensifier) do not count.
     pub fn noise(&self) -> Noise {
-        let (w, h) = (self.width, self.height);
-        let mut all = Vec::with_capacity(w * h / (STEP * STEP));
-        let mut classes: [Vec<f32>; CLASSES] = Default::default();
-        for y in (1..h.saturating_sub(1)).step_by(STEP) {
-            let rows = [y - 1, y, y + 1].map(|y| &self.samples[y * w..(y + 1) * w]);
-            for x in (1..w.saturating_sub(1)).step_by(STEP) {
-                let [above, here, below] = rows.map(|r| [r[x - 1], r[x], r[x + 1]]);
-                let corners = above[0] + above[2] + below[0] + below[2];
-                let sides = above[1] + here[0] + here[2] + below[1];
-                let value = (corners - 2.0 * sides + 4.0 * here[1]).abs();
-                if value > 0.0 {
-                    all.push(value);
-                    let level = (corners + sides + here[1]) / 9.0;
-                    classes[((level * (CLASSES as f32 / 255.0)) as usize).min(CLASSES - 1)].push(value);
-                }
+        let w = self.width;
+        let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&self.samples[y * w..(y + 1) * w]);
+        measure([w, self.height], row)
+    }
+}
+
+fn measure(size: [usize; 2], row: impl Fn(usize, &mut [f32])) -> Noise {
+    Arch::new().dispatch(
+        #[inline(always)]
+        || measure_rows(size, row),
+    )
+}
+
+#[inline(always)]
+fn measure_rows([w, h]: [usize; 2], row: impl Fn(usize, &mut [f32])) -> Noise {
+    let mut all = Vec::with_capacity(w * h / (STEP * STEP));
+    let mut classes: [Vec<f32>; CLASSES] = Default::default();
+    let mut rows = [vec![0.0; w], vec![0.0; w], vec![0.0; w]];
+    for y in (1..h.saturating_sub(1)).step_by(STEP) {
+        for (row_number, out) in (y - 1..).zip(&mut rows) {
+            row(row_number, out);
+        }
+        let [above, here, below] = rows.each_ref().map(|r| &r[..w]);
+        for x in (1..w.saturating_sub(1)).step_by(STEP) {
+            let [above, here, below] = [above, here, below].map(|r| [r[x - 1], r[x], r[x + 1]]);
+            let corners = above[0] + above[2] + below[0] + below[2];
+            let sides = above[1] + here[0] + here[2] + below[1];
+            let value = (corners - 2.0 * sides + 4.0 * here[1]).abs();
+            if value > 0.0 {
+                all.push(value);
+                let level = (corners + sides + here[1]) / 9.0;
+                classes[((level * (CLASSES as f32 / 255.0)) as usize).min(CLASSES - 1)].push(value);
             }
         }
-        let overall = deviation(&mut all);
-        let by_level =
-            classes.map(|mut class| if class.len() < FEWEST { overall } else { deviation(&mut class) });
-        Noise { overall, by_level }
     }
+    let overall = deviation(&mut all);
+    let by_level =
+        classes.map(|mut class| if class.len() < FEWEST { overall } else { deviation(&mut class) });
+    Noise { overall, by_level }
 }
 
 #[cfg(test)]

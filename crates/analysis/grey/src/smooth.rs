@@ -1,8 +1,9 @@
 //! Gaussian smoothing: rows, then columns, a row at a time, so that what is being worked on stays in the cache.
 
+use biplane_artifact::Frame;
 use pulp::Arch;
 
-use crate::Grey;
+use crate::{Grey, scaled_rows};
 
 /// Half of a Gaussian's weights, from its middle outwards to 4 standard deviations; the whole sums to 1.
 fn half_kernel(sigma: f64) -> Vec<f32> {
@@ -29,20 +30,34 @@ impl Grey {
         if sigma <= 0.0 || width * height == 0 {
             return self.clone();
         }
-        let mut samples = vec![0.0_f32; width * height];
-        let kernel = half_kernel(sigma);
-        Arch::new().dispatch(
-            #[inline(always)]
-            || smooth(width, &self.samples, &kernel, &mut samples),
-        );
-        Self { width, height, samples }
+        let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&self.samples[y * width..(y + 1) * width]);
+        Self { width, height, samples: smoothed([width, height], sigma, row) }
     }
+
+    /// The same of a frame's samples scaled to 0..255, without a copy of them in between.
+    pub fn of_smoothed(frame: &Frame, sigma: f64) -> Self {
+        let (width, height) = (frame.width, frame.height);
+        if sigma <= 0.0 || width * height == 0 {
+            return Self::of(frame);
+        }
+        Self { width, height, samples: smoothed([width, height], sigma, scaled_rows(frame)) }
+    }
+}
+
+/// Convolution of a picture given by its rows.
+fn smoothed([width, height]: [usize; 2], sigma: f64, row: impl Fn(usize, &mut [f32])) -> Vec<f32> {
+    let kernel = half_kernel(sigma);
+    let mut samples = vec![0.0_f32; width * height];
+    Arch::new().dispatch(
+        #[inline(always)]
+        || smooth(height, row, &kernel, width, &mut samples),
+    );
+    samples
 }
 
 /// `out = k * samples` in both directions.
 #[inline(always)]
-fn smooth(width: usize, samples: &[f32], kernel: &[f32], out: &mut [f32]) {
-    let height = samples.len() / width;
+fn smooth(height: usize, source: impl Fn(usize, &mut [f32]), kernel: &[f32], width: usize, out: &mut [f32]) {
     let reach = kernel.len() - 1;
     // The last rows that were smoothed along themselves; as many as a column's sum needs.
     let kept = (2 * reach + 1).min(height);
@@ -51,13 +66,10 @@ fn smooth(width: usize, samples: &[f32], kernel: &[f32], out: &mut [f32]) {
     let mut done = 0;
     for (y, out) in out.chunks_exact_mut(width).enumerate() {
         while done < (y + reach + 1).min(height) {
-            let row = &samples[done * width..(done + 1) * width];
-            for (i, v) in line[..reach].iter_mut().enumerate() {
-                *v = row[mirrored(i as isize - reach as isize, width)];
-            }
-            line[reach..reach + width].copy_from_slice(row);
-            for (i, v) in line[reach + width..].iter_mut().enumerate() {
-                *v = row[mirrored((width + i) as isize, width)];
+            source(done, &mut line[reach..reach + width]);
+            for i in 0..reach {
+                line[i] = line[reach + mirrored(i as isize - reach as isize, width)];
+                line[reach + width + i] = line[reach + mirrored((width + i) as isize, width)];
             }
             let slot = done % kept * width;
             let pair = |k: usize| (&line[reach - k..], &line[reach + k..]);
@@ -121,6 +133,15 @@ mod tests {
                 sum += weight * samples[mirrored(y + j, height) * width + mirrored(x + i, width)];
             }
             assert!((found - sum).abs() < 1e-3, "{place}: {found} is not {sum}");
+        }
+    }
+
+    #[test]
+    fn a_frame_is_smoothed_as_its_grey_levels_are() {
+        let samples = (0..40 * 31).map(|i| (i * 7919 % 4096) as u16).collect();
+        let frame = Frame { width: 40, height: 31, samples, bits: 12 };
+        for sigma in [0.0, 0.7, 3.0] {
+            assert_eq!(Grey::of_smoothed(&frame, sigma), Grey::of(&frame).smoothed(sigma));
         }
     }
 

@@ -8,8 +8,9 @@ use std::process::Command;
 use std::time::Instant;
 
 use biplane_artifact::Frame;
-use biplane_grey::Grey;
-use biplane_segmentation::{Method, SegmentParams, curves, curves_of, find_edges, link};
+use biplane_grey::{Grey, Noise};
+use biplane_segmentation::{Method, SegmentParams, curves, edges_of, link};
+use biplane_spline::{Smoothing, Spline};
 
 /// Prints the least time of each in ms: blur, Canny with as many edge pixels as asked.
 const OPENCV: &str = r"
@@ -77,31 +78,42 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{}: {width} x {height}", path.file_name().unwrap_or_default().to_string_lossy());
     for smoothing_px in [1.0, 2.0] {
         let params = SegmentParams { smoothing_px, ..SegmentParams::default() };
-        let grey = Grey::of(&frame);
-        let map = find_edges(width, height, grey.samples.clone(), &params);
+        let map = edges_of(&frame, None, &params);
         println!("\nsigma {smoothing_px} px, {} edge points", map.points.len());
-        let to_grey = least(|| Grey::of(&frame));
-        let smooth = least(|| grey.smoothed(smoothing_px));
-        let noise = least(|| grey.noise());
-        let edges = least(|| find_edges(width, height, grey.samples.clone(), &params))
-            - least(|| grey.samples.clone());
+        let smooth = least(|| Grey::of_smoothed(&frame, smoothing_px));
+        let noise = least(|| Noise::of(&frame));
+        let edges = least(|| edges_of(&frame, None, &params));
         let linked = least(|| link(&map, &params));
-        let whole = least(|| curves_of(&Grey::of(&frame), None, &params));
-        println!("{to_grey:7.2} ms  8 bit to grey levels");
-        println!("{smooth:7.2} ms  smoothing");
+        let whole = least(|| curves(&frame, None, &params));
+        println!("{smooth:7.2} ms  8 bit to grey levels, smoothing");
         println!("{noise:7.2} ms  noise by level");
         println!("{:7.2} ms  gradient, crests, hysteresis, fractions of a pixel", edges - smooth - noise);
-        let ours = to_grey + edges;
-        println!("{ours:7.2} ms  edge points from the 8-bit frame");
+        println!("{edges:7.2} ms  edge points from the 8-bit frame");
         println!("{linked:7.2} ms  linking, bridging, correction of curved edges");
         println!("{whole:7.2} ms  all of it");
+        // As neighbours share noise over the smoothing.
+        let smoothing = Smoothing { correlated_points: 3.5 * smoothing_px.max(0.5), ..Smoothing::default() };
+        let found = curves(&frame, None, &params)?;
+        let splines = least(|| {
+            let spline = |c: &biplane_geometry::Curve| {
+                let places: Vec<_> = c.points.iter().map(|p| p.position).collect();
+                let sigmas: Vec<_> = c.points.iter().map(|p| p.sigma_px).collect();
+                Spline::near(&places, &sigmas, c.closed, smoothing)
+            };
+            found.0.iter().map(spline).filter(Result::is_ok).count()
+        });
+        println!("{splines:7.2} ms  splines near {} curves", found.0.len());
         match opencv(&path, smoothing_px, map.points.len()) {
             Some((blur, canny, what)) => {
                 println!("{blur:7.2} ms  GaussianBlur, {canny:.2} ms Canny: {what}");
                 let theirs = blur + canny;
                 println!(
+                    "{:7.2} x OpenCV of one frame for curves and splines of a pair (at most 30)",
+                    2.0 * (whole + splines) / theirs
+                );
+                println!(
                     "{:7.2} x OpenCV for the edge points (at most 3), {:.2} x with curves",
-                    ours / theirs,
+                    edges / theirs,
                     whole / theirs
                 );
             }

@@ -8,7 +8,7 @@
 //! zero; between the two the field counts as linear. As with crests, the gradient's size decides by hysteresis what is an edge.
 
 use biplane_geometry::{EdgePoint, Vector2};
-use biplane_grey::Grey;
+use biplane_grey::{Grey, Noise};
 
 use crate::crest::{Field, Operator};
 use crate::edges::{BORDER, CANDIDATE, EdgeMap, STRONG, keep_connected, point_at};
@@ -19,8 +19,8 @@ const REGION_SMOOTHING_PX: f64 = 1.0;
 
 /// Finds the crossings of the field that the method names.
 pub(crate) fn find(
-    grey: &Grey,
     smooth: &Grey,
+    noise: impl FnOnce() -> Noise,
     params: &SegmentParams,
     wanted: impl Fn(u32) -> bool,
 ) -> EdgeMap {
@@ -49,7 +49,7 @@ pub(crate) fn find(
         }
     }
     let pixels = keep_connected(w, marks, wanted);
-    let noise = grey.noise();
+    let noise = noise();
     let blur = (params.smoothing_px.powi(2) + 0.1).sqrt();
     let point = |&pixel: &u32| -> Option<EdgePoint> {
         let k = pixel as usize;

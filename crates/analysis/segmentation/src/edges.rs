@@ -6,7 +6,7 @@
 //! **crossing** of zero by some field (Laplacian of Gaussian, thresholding, region growing: [`crate::crossing`]).
 
 use biplane_geometry::{EdgePoint, Point2, Vector2};
-use biplane_grey::Grey;
+use biplane_grey::{Grey, Noise};
 
 use crate::{Method, SegmentParams, crest, crossing};
 
@@ -42,16 +42,22 @@ pub fn find_edges(width: usize, height: usize, samples: Vec<f32>, params: &Segme
     if width.checked_mul(height) != Some(samples.len()) {
         return EdgeMap::default();
     }
-    find(&Grey { width, height, samples }, None, params)
+    let grey = Grey { width, height, samples };
+    find(&grey.smoothed(params.smoothing_px), || grey.noise(), None, params)
 }
 
-/// Finds the edge points of a picture, where `mask` (of the same size, if any) is not 0.
-pub(crate) fn find(grey: &Grey, mask: Option<&[u16]>, params: &SegmentParams) -> EdgeMap {
-    let (width, height) = (grey.width, grey.height);
+/// Finds the edge points of a smoothed picture, where `mask` (of the same size, if any) is not 0, given the noise that it had
+/// before it was smoothed.
+pub(crate) fn find(
+    smooth: &Grey,
+    noise: impl FnOnce() -> Noise,
+    mask: Option<&[u16]>,
+    params: &SegmentParams,
+) -> EdgeMap {
+    let (width, height) = (smooth.width, smooth.height);
     if width < 8 || height < 8 {
         return EdgeMap { width, height, ..EdgeMap::default() };
     }
-    let smooth = grey.smoothed(params.smoothing_px);
     let wanted = |pixel: u32| {
         let pixel = pixel as usize;
         let inside = params.region_px.is_none_or(|[left, top, right, bottom]| {
@@ -62,14 +68,13 @@ pub(crate) fn find(grey: &Grey, mask: Option<&[u16]>, params: &SegmentParams) ->
     };
     match params.method.gradient() {
         Some(operator) => {
-            let field = crest::Field { smooth: &smooth, operator };
+            let field = crest::Field { smooth, operator };
             let [low, high] = params.thresholds(&field);
             let pixels = keep_connected(width, field.crests(low, high), wanted);
-            let noise = grey.noise();
-            let (points, blurs) = field.points(&pixels, &noise, params.smoothing_px);
+            let (points, blurs) = field.points(&pixels, &noise(), params.smoothing_px);
             EdgeMap { width, height, points, pixels, blurs }
         }
-        None => crossing::find(grey, &smooth, params, wanted),
+        None => crossing::find(smooth, noise, params, wanted),
     }
 }
 

@@ -20,5 +20,5 @@ mod trace;
 
 pub use edges::{EdgeMap, find_edges};
 pub use link::link;
-pub use stage::{Method, Segment, SegmentError, SegmentInputs, SegmentParams, curves, curves_of};
+pub use stage::{Method, Segment, SegmentError, SegmentInputs, SegmentParams, curves, curves_of, edges_of};
 pub use trace::{Trace, TraceError, TraceInputs, TraceParams, traced};

@@ -2,13 +2,13 @@
 
 use biplane_artifact::{Curves, Frame};
 use biplane_geometry::Curve;
-use biplane_grey::Grey;
+use biplane_grey::{Grey, Noise};
 use biplane_stage::{Context, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::crest::Field;
-use crate::edges::find;
+use crate::edges::{EdgeMap, find};
 use crate::link;
 
 inputs! {
@@ -249,7 +249,7 @@ pub fn curves(frame: &Frame, mask: Option<&Frame>, params: &SegmentParams) -> Re
     if let Some(mask) = mask.filter(|m| [m.width, m.height] != frame_size) {
         return Err(SegmentError::Mask { mask: [mask.width, mask.height], frame: frame_size });
     }
-    let found = curves_of(&Grey::of(frame), mask.map(|m| m.samples.as_slice()), params);
+    let found = link(&edges_of(frame, mask, params), params);
     if found.is_empty() {
         let [width, height] = frame_size;
         return Err(SegmentError::NoEdge { width, height, high: params.high_threshold });
@@ -257,8 +257,14 @@ pub fn curves(frame: &Frame, mask: Option<&Frame>, params: &SegmentParams) -> Re
     Ok(Curves::rounded(found))
 }
 
+/// The edge points of a frame, where `mask` (if any, of the same size) is not 0.
+pub fn edges_of(frame: &Frame, mask: Option<&Frame>, params: &SegmentParams) -> EdgeMap {
+    let smooth = Grey::of_smoothed(frame, params.smoothing_px);
+    find(&smooth, || Noise::of(frame), mask.map(|m| m.samples.as_slice()), params)
+}
+
 /// The edge curves of a grey picture, where `mask` (if any) is not 0.
 pub fn curves_of(grey: &Grey, mask: Option<&[u16]>, params: &SegmentParams) -> Vec<Curve> {
-    let map = find(grey, mask, params);
-    link(&map, params)
+    let smooth = grey.smoothed(params.smoothing_px);
+    link(&find(&smooth, || grey.noise(), mask, params), params)
 }
