@@ -21,11 +21,12 @@ use biplane_stage::Context;
 use crate::blur::gaussian;
 use crate::distance::{Within, to_set};
 use crate::levels::{Shares, Slice, normals, shares};
+use crate::marching::{self, Saddles};
 use crate::ring::{self, Plane};
 use crate::shell::{Known, Profile, outside};
 use crate::stack::Stack;
 use crate::stage::{Contrast, Found, SeedPlace, SlicesParams};
-use crate::{SlicesError, evenly, grow, marching};
+use crate::{SlicesError, evenly, grow};
 
 /// Smoothing of the levels that voxels are sorted by, pixels.
 const SORTING_PX: f64 = 0.6;
@@ -36,7 +37,9 @@ const MOST_MARROW: f64 = 0.5;
 /// A shell has to be darker than marrow and than what is outside by this share of the marrow's level.
 const LEAST_CONTRAST: f64 = 0.1;
 /// A voxel is dark from this share of the shell's contrast on: of a shell thinner than a slice that leans there is no more.
-const DARK: f64 = 0.35;
+const DARK: f64 = 0.25;
+/// The shell is nowhere thicker than this times what it is on the whole around there.
+const END: f64 = 1.5;
 /// Part of a slice's thickness over which marrow may fade before the shell is dark.
 const SPREAD: f64 = 0.75;
 /// A surface that a slice spreads over more pixels than this has no edge in it.
@@ -112,8 +115,8 @@ pub(crate) fn contours(
 
     let filled: Vec<f32> = marrow.iter().map(|&m| if m { 1.0 } else { 0.0 }).collect();
     let found = shares(&stack, &sorting, &filled, &levels, params.shell_mm);
-    let Some(shares) = found.filter(|s| s.outside.min(1.0) - s.dark > LEAST_CONTRAST) else {
-        let found = match found {
+    let Some(shares) = found.as_ref().filter(|s| s.outside.min(1.0) - s.dark > LEAST_CONTRAST) else {
+        let found = match &found {
             Some(s) => format!(
                 "the marrow's border is at {:.0} % of its level and what lies beyond at {:.0} %: no shell between them",
                 100.0 * s.dark,
@@ -216,7 +219,7 @@ fn enclosed(
     sorting: &[f32],
     marrow: &[bool],
     levels: &[f32],
-    shares: Shares,
+    shares: &Shares,
     shell_mm: f64,
 ) -> Vec<bool> {
     let pixel = stack.pixel_mm[0].max(stack.pixel_mm[1]);
@@ -227,15 +230,23 @@ fn enclosed(
         near.heights_mm[k] = near.heights_mm[k - 1] + gap;
     }
     let off = to_set(&near, |v| marrow[v], Within::Stack);
-    let least = (shares.outside - DARK * (shares.outside - shares.dark)) as f32;
+    let least = |v: usize| {
+        let outside = shares.outside_at(stack.place(v));
+        (outside - DARK * (outside - shares.dark)) as f32
+    };
     let rim = 1.5 * pixel as f32;
-    let reach = shell_mm as f32 + rim;
-    let shell = |v: usize| off[v] <= reach && sorting[v] < least * levels[v];
+    let reach = |v: usize| {
+        let place = stack.place(v);
+        let least = SPREAD * stack.thickness_mm(place[2]);
+        (END * shares.end_mm_at(place)).max(least).min(shell_mm) as f32 + rim
+    };
+    let shell =
+        |v: usize| off[v] <= shell_mm as f32 + rim && off[v] <= reach(v) && sorting[v] < least(v) * levels[v];
     // Across a thick slice a leaning surface goes from bright to dark over a part of its thickness.
     let first: Vec<f32> =
         (0..stack.size[2]).map(|k| rim.max((SPREAD * stack.thickness_mm(k)) as f32)).collect();
-    let starts =
-        (0..stack.voxels()).filter(|&v| off[v] > 0.0 && off[v] <= first[v / stack.slice_voxels()] && shell(v));
+    let starts = (0..stack.voxels())
+        .filter(|&v| off[v] > 0.0 && off[v] <= first[v / stack.slice_voxels()] && shell(v));
     let solid = grow::reached(stack, shell, starts);
     let kept = between(stack, &off, &solid);
     let open = |v: usize| !(marrow[v] || kept[v]);
@@ -243,7 +254,25 @@ fn enclosed(
         let place = stack.place(v);
         (0..3).any(|a| place[a] == 0 || place[a] + 1 == stack.size[a])
     });
-    grow::reached(stack, open, border).into_iter().map(|beyond| !beyond).collect()
+    let mut bone: Vec<bool> = grow::reached(stack, open, border).into_iter().map(|beyond| !beyond).collect();
+    let pixel_mm2 = stack.pixel_mm[0] * stack.pixel_mm[1];
+    fill_gaps(stack, &mut bone, (shell_mm * shell_mm / pixel_mm2) as usize, |v| off[v] <= reach(v));
+    bone
+}
+
+/// Fills what a slice shows enclosed by bone, where it is small or all of it near enough to the marrow: from a thick slice
+/// to the next the way between marrow and shell may be open.
+fn fill_gaps(stack: &Stack, bone: &mut [bool], small: usize, near: impl Fn(usize) -> bool) {
+    let gaps = grow::Pieces::of(stack, |v| !bone[v]);
+    for gap in gaps.voxels {
+        let inside = |&v: &usize| {
+            let [i, j, _] = stack.place(v);
+            i > 0 && j > 0 && i + 1 < stack.size[0] && j + 1 < stack.size[1]
+        };
+        if gap.iter().all(inside) && (gap.len() <= small || gap.iter().all(|&v| near(v))) {
+            gap.iter().for_each(|&v| bone[v] = true);
+        }
+    }
 }
 
 /// A set with all that lies between it and the marrow: the way down the distance `off` from the marrow, from voxel to voxel.
@@ -268,7 +297,7 @@ struct Job<'a> {
     samples: &'a [f32],
     levels: &'a [f32],
     bone: &'a [bool],
-    shares: Shares,
+    shares: &'a Shares,
     noise: f64,
     shell_mm: f64,
 }
@@ -291,8 +320,8 @@ impl Job<'_> {
         let first = k * columns * rows;
         let bone = |i: usize, j: usize| self.bone[first + j * columns + i];
         let dark_share = |v: usize| {
-            let (dark, out) = (self.shares.dark as f32, self.shares.outside as f32);
-            (out - self.samples[v] / self.levels[v]) / (out - dark)
+            let (dark, out) = (self.shares.dark as f32, self.shares.outside_at(self.stack.place(v)) as f32);
+            (out - self.samples[v] / self.levels[v]) / (out - dark).max(0.05)
         };
         let mut field = Vec::with_capacity(columns * rows);
         for j in 0..rows {
@@ -320,7 +349,7 @@ impl Job<'_> {
         let [dx, dy] = self.stack.pixel_mm;
         let mut found = Found::default();
         let (mut unclear, mut all) = (0, 0);
-        for ring in marching::contours(&self.shares_of_bone(k), columns, 0.5, 0.0) {
+        for ring in marching::contours(&self.shares_of_bone(k), columns, 0.5, 0.0, Saddles::Bilinear) {
             if ring::signed_area(&ring).abs() < LEAST_AREA_PX2 {
                 continue;
             }
@@ -362,13 +391,15 @@ impl Job<'_> {
         for (p, n) in outline.iter().zip(&directions) {
             let px = |s: f64| [(p[0] + s * n[0]) / dx, (p[1] + s * n[1]) / dy];
             let level = levels.at(px(0.0));
+            let [i, j] = px(0.0).map(|v| v.round().max(0.0) as usize);
+            let beyond = self.shares.outside_at([i, j, k]).max(self.shares.dark + LEAST_CONTRAST / 2.0);
             // By how much the outline moves across the slice's thickness.
             let lean = (high.at(px(0.0)) - low.at(px(0.0))).abs() / apart * thickness;
             let width = (n[0] * dx).hypot(n[1] * dy);
             let known = Known {
                 marrow: level,
                 dark: level * self.shares.dark,
-                outside: level * self.shares.outside,
+                outside: level * beyond,
                 noise: self.noise,
                 // The box of a pixel (variance 1/12) and linear interpolation (1/6): as one box.
                 pixel: 3.0_f64.sqrt() * width,

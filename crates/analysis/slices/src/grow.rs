@@ -16,6 +16,11 @@ const FARTHEST: f32 = 2.5;
 /// Voxels this near to the seed are where growth begins, mm.
 const SEED_MM: f64 = 2.0;
 
+/// A piece of a slice far from its neighbour belongs to that one's where this part of it lies over it,
+const COVERED: f64 = 0.75;
+/// or no farther beside it than this times the distance of the slices.
+const SLOPE: f64 = 1.0;
+
 /// Level of each voxel of the marrow, NaN elsewhere. Grows over `smooth` from a voxel; `tolerance` is by how much a voxel
 /// may differ, as a share of the level.
 pub(crate) fn grow(stack: &Stack, smooth: &[f32], seed: usize, tolerance: f32) -> Vec<f32> {
@@ -65,31 +70,97 @@ fn around(stack: &Stack, seed: usize) -> Vec<usize> {
 }
 
 /// The part of a set that hangs together with the seed through nothing narrower than twice `leak_mm`; all of the set's
-/// piece around the seed where even that is narrower.
+/// piece around the seed where even that is narrower. Slices farther apart than `leak_mm` are followed by what they show: a
+/// piece of one belongs to that of the next where it lies over it for the most part.
 pub(crate) fn without_leaks(stack: &Stack, set: &[bool], seed: usize, leak_mm: f32) -> Vec<bool> {
-    if leak_mm <= 0.0 {
-        return set.to_vec();
-    }
     let depth = to_set(stack, |v| !set[v], Within::Stack);
-    let start = around(stack, seed)
-        .into_iter()
-        .filter(|&v| set[v])
-        .max_by(|&a, &b| depth[a].total_cmp(&depth[b]).then(b.cmp(&a)));
-    let Some(start) = start else {
-        return set.to_vec();
+    let deepest = |&a: &usize, &b: &usize| depth[a].total_cmp(&depth[b]).then(b.cmp(&a));
+    let Some(start) = around(stack, seed).into_iter().filter(|&v| set[v]).max_by(deepest) else {
+        return vec![false; set.len()];
     };
-    let core = piece(stack, |v| depth[v] > leak_mm, start);
-    if !core[start] {
-        return set.to_vec();
-    }
+    let leak_mm = leak_mm.min(0.99 * depth[start]);
+    let core = followed(stack, &depth, leak_mm, start);
     let off = to_set(stack, |v| core[v], Within::Stack);
     let reach = leak_mm + (stack.pixel_mm[0].max(stack.pixel_mm[1])) as f32;
-    piece(stack, |v| set[v] && off[v] <= reach, start)
+    reached(stack, |v| set[v] && off[v] <= reach, (0..core.len()).filter(|&v| core[v]))
 }
 
-/// The voxels of a set that hang together with one, across faces; none where that is not in the set.
-pub(crate) fn piece(stack: &Stack, set: impl Fn(usize) -> bool, start: usize) -> Vec<bool> {
-    reached(stack, set, [start])
+/// The voxels deeper than `leak_mm` that hang together with `start`.
+fn followed(stack: &Stack, depth: &[f32], leak_mm: f32, start: usize) -> Vec<bool> {
+    let size = stack.slice_voxels();
+    let deep = |v: usize| depth[v] > leak_mm;
+    let pieces = Pieces::of(stack, deep);
+    let mut taken = vec![false; pieces.voxels.len()];
+    let mut open = vec![pieces.number[start]];
+    while let Some(piece) = open.pop().filter(|&p| p != NO_PIECE) {
+        if std::mem::replace(&mut taken[piece as usize], true) {
+            continue;
+        }
+        let here = &pieces.voxels[piece as usize];
+        let k = here[0] / size;
+        for next in [k.checked_sub(1), (k + 1 < stack.size[2]).then_some(k + 1)].into_iter().flatten() {
+            let gap = (stack.heights_mm[next] - stack.heights_mm[k]).abs();
+            let beside = |v: usize| v % size + next * size;
+            let mut met: Vec<u32> =
+                here.iter().map(|&v| pieces.number[beside(v)]).filter(|&p| p != NO_PIECE).collect();
+            met.sort_unstable();
+            met.dedup();
+            met.retain(|&p| !taken[p as usize]);
+            if gap as f32 > leak_mm && !met.is_empty() {
+                let flat = Stack {
+                    size: [stack.size[0], stack.size[1], 1],
+                    pixel_mm: stack.pixel_mm,
+                    heights_mm: vec![0.0],
+                };
+                let mut mask = vec![false; size];
+                here.iter().for_each(|&v| mask[v % size] = true);
+                let off = to_set(&flat, |v| mask[v], Within::Slice);
+                met.retain(|&p| {
+                    let all = &pieces.voxels[p as usize];
+                    let over = all.iter().filter(|&&v| f64::from(off[v % size]) <= SLOPE * gap).count();
+                    over as f64 >= COVERED * all.len() as f64
+                });
+            }
+            open.extend(met);
+        }
+    }
+    (0..stack.voxels()).map(|v| pieces.number[v] != NO_PIECE && taken[pieces.number[v] as usize]).collect()
+}
+
+/// Pieces of a set within each slice.
+pub(crate) struct Pieces {
+    /// The piece each voxel belongs to.
+    number: Vec<u32>,
+    pub voxels: Vec<Vec<usize>>,
+}
+
+const NO_PIECE: u32 = u32::MAX;
+
+impl Pieces {
+    pub fn of(stack: &Stack, set: impl Fn(usize) -> bool) -> Self {
+        let mut pieces = Self { number: vec![NO_PIECE; stack.voxels()], voxels: Vec::new() };
+        for start in 0..stack.voxels() {
+            if !set(start) || pieces.number[start] != NO_PIECE {
+                continue;
+            }
+            let own = pieces.voxels.len() as u32;
+            pieces.number[start] = own;
+            let mut voxels = vec![start];
+            let mut at = 0;
+            while let Some(&v) = voxels.get(at) {
+                at += 1;
+                for n in stack.neighbours(v).filter(|n| n / stack.slice_voxels() == v / stack.slice_voxels())
+                {
+                    if set(n) && pieces.number[n] == NO_PIECE {
+                        pieces.number[n] = own;
+                        voxels.push(n);
+                    }
+                }
+            }
+            pieces.voxels.push(voxels);
+        }
+        pieces
+    }
 }
 
 /// The voxels of a set that hang together with any of those given, across faces.

@@ -12,11 +12,12 @@ use std::collections::BTreeSet;
 use biplane_artifact::{SlicePoint, Volume};
 use biplane_stage::Context;
 
+use crate::SlicesError;
 use crate::blur::gaussian;
+use crate::marching::{self, Saddles};
 use crate::ring::Plane;
 use crate::stack::Stack;
 use crate::stage::Found;
-use crate::{SlicesError, marching};
 
 /// Size of the Gaussian where a part is thin, pixels.
 const THIN_PX: f64 = 0.5;
@@ -24,7 +25,7 @@ const THIN_PX: f64 = 0.5;
 const THIN: f32 = 0.06;
 /// How near to one half a centre may come, so that contours do not touch themselves there.
 const MARGIN: f32 = 0.02;
-/// Standard deviation of the contour for a smooth body, in shares of a pixel: measured on balls, see the tests.
+/// Standard deviation of the contour for a smooth body, in shares of a pixel: measured on balls and bones, see the tests.
 const SIGMA_PX: f64 = 0.12;
 
 /// Most labels that an error names.
@@ -62,7 +63,7 @@ pub(crate) fn contours(
         let slice = &field[k * part.slice_voxels()..(k + 1) * part.slice_voxels()];
         let point =
             |p: &Plane| SlicePoint::rounded(p[0] + low[0] as f64, p[1] + low[1] as f64, SIGMA_PX * pixel);
-        let found = marching::contours(slice, part.size[0], 0.5, 0.0);
+        let found = marching::contours(slice, part.size[0], 0.5, 0.0, Saddles::Joined);
         slices[low[2] + k].rings = found.iter().map(|c| c.iter().map(point).collect()).collect();
     }
     Ok(slices)

@@ -1,14 +1,40 @@
 //! The levels of the shell and of what surrounds the bone, as shares of the marrow's level beside them.
 
-use crate::marching;
+use crate::blur::gaussian;
+use crate::marching::{self, Saddles};
 use crate::ring::{self, Plane};
 use crate::stack::Stack;
 
-/// Share of the marrow's level, over the whole bone.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Levels around a bone, as shares of the marrow's: the shell's one for all of it; that outside changes from place to place
+/// (fat, muscle, cartilage) and is kept in cells.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shares {
     pub dark: f64,
+    /// What is usual outside.
     pub outside: f64,
+    outsides: Vec<f32>,
+    /// How far from the marrow the shell ends, mm.
+    ends: Vec<f32>,
+    /// Voxels in a cell along each axis, and the number of cells.
+    cell: [usize; 3],
+    size: [usize; 3],
+}
+
+impl Shares {
+    /// Share of the level outside of the bone near a voxel.
+    pub fn outside_at(&self, place: [usize; 3]) -> f64 {
+        f64::from(self.outsides[self.cell_of(place)])
+    }
+
+    /// How far from the marrow the shell ends near a voxel, mm.
+    pub fn end_mm_at(&self, place: [usize; 3]) -> f64 {
+        f64::from(self.ends[self.cell_of(place)])
+    }
+
+    fn cell_of(&self, place: [usize; 3]) -> usize {
+        let at: [usize; 3] = std::array::from_fn(|a| (place[a] / self.cell[a]).min(self.size[a] - 1));
+        (at[2] * self.size[1] + at[1]) * self.size[0] + at[0]
+    }
 }
 
 /// One slice, to be read between its pixels.
@@ -46,13 +72,21 @@ pub(crate) fn normals(ring: &[Plane]) -> Vec<Plane> {
         .collect()
 }
 
-/// How far the rays go beyond the darkest place, mm.
+/// How far the rays go beyond the shell, mm.
 const BEYOND_MM: f64 = 4.0;
+/// By how much of the marrow's level it gets brighter beyond a shell.
+const RISE: f64 = 0.12;
 /// Least number of rays that say something.
 const LEAST_RAYS: usize = 30;
+/// Side of a cell, and the reach of a ray's word, mm.
+const CELL_MM: f64 = 3.0;
+/// The darkest places differ by how much of a voxel the shell fills: so many of them are as dark as the shell.
+const DARK_SHARE: f64 = 0.25;
+/// How many rays the usual level outside counts for in a cell.
+const USUAL_RAYS: f32 = 0.02;
 
-/// Looks outward from the marrow's outline in every slice: the darkest place within `shell_mm`, and the level beyond it.
-/// `levels` are the marrow's, carried on beyond it. None where too few rays see anything dark.
+/// Looks outward from the marrow's outline in every slice: the darkest place within `shell_mm` before it gets brighter again,
+/// and the level beyond it. `levels` are the marrow's, carried on beyond it. None where too few rays see anything dark.
 pub(crate) fn shares(
     stack: &Stack,
     smooth: &[f32],
@@ -63,29 +97,33 @@ pub(crate) fn shares(
     let [dx, dy] = stack.pixel_mm;
     let pixel = (dx * dy).sqrt();
     let step = pixel / 2.0;
-    let (mut darks, mut outsides) = (Vec::new(), Vec::new());
+    let shell = (shell_mm / step) as usize;
+    let beyond = (BEYOND_MM / step) as usize;
+    let (mut darks, mut seen) = (Vec::new(), Vec::new());
     for k in 0..stack.size[2] {
         let span = k * stack.slice_voxels()..(k + 1) * stack.slice_voxels();
         let columns = stack.size[0];
         let slice = Slice { values: &smooth[span.clone()], columns };
         let level = Slice { values: &levels[span.clone()], columns };
-        for found in marching::contours(&marrow[span], columns, 0.5, 0.0) {
+        for found in marching::contours(&marrow[span], columns, 0.5, 0.0, Saddles::Bilinear) {
             let scaled: Vec<Plane> = found.iter().map(|p| [p[0] * dx, p[1] * dy]).collect();
-            let points = ring::resampled(&scaled, 3.0 * pixel);
+            let points = ring::resampled(&scaled, 2.0 * pixel);
             for (p, n) in points.iter().zip(normals(&points)) {
                 let px = |s: f64| [(p[0] + s * n[0]) / dx, (p[1] + s * n[1]) / dy];
-                let shell = (shell_mm / step) as usize;
-                let all = shell + (BEYOND_MM / step) as usize;
-                let here = level.at([p[0] / dx, p[1] / dy]);
-                let ray: Vec<f64> = (0..=all).map(|m| slice.at(px(m as f64 * step)) / here).collect();
-                let Some(darkest) = (0..=shell).min_by(|&a, &b| ray[a].total_cmp(&ray[b])) else { continue };
-                let mut beyond: Vec<f64> =
-                    ray[darkest..].iter().skip((1.5 * pixel / step) as usize).copied().collect();
-                beyond.truncate((BEYOND_MM / step) as usize);
-                beyond.sort_by(f64::total_cmp);
-                if let Some(&outside) = beyond.get(beyond.len() / 2) {
+                let here = level.at(px(0.0));
+                let ray: Vec<f64> =
+                    (0..=shell + beyond).map(|m| slice.at(px(m as f64 * step)) / here).collect();
+                let Some(darkest) = valley(&ray, shell) else { continue };
+                let first = darkest + (1.5 * pixel / step) as usize;
+                let mut after: Vec<f64> = ray.iter().skip(first).take(beyond).copied().collect();
+                after.sort_by(f64::total_cmp);
+                // The upper quartile: a part of the way may still be in a shell that leans.
+                if let Some(&outside) = after.get(after.len() * 3 / 4) {
                     darks.push(ray[darkest]);
-                    outsides.push(outside);
+                    let [i, j] = px(darkest as f64 * step).map(|v| v.round().max(0.0) as usize);
+                    let half = (ray[darkest] + outside) / 2.0;
+                    let end = (darkest..ray.len()).find(|&m| ray[m] > half).unwrap_or(shell);
+                    seen.push(([i, j, k], [outside, end as f64 * step]));
                 }
             }
         }
@@ -93,9 +131,71 @@ pub(crate) fn shares(
     if darks.len() < LEAST_RAYS {
         return None;
     }
-    let median = |values: &mut Vec<f64>| {
+    let at = |mut values: Vec<f64>, share: f64| {
         values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
+        values[(values.len() as f64 * share) as usize]
     };
-    Some(Shares { dark: median(&mut darks), outside: median(&mut outsides) })
+    let usual = [0, 1].map(|n| at(seen.iter().map(|s| s.1[n]).collect(), 0.5));
+    let thickness = stack.thickness_mm(stack.size[2] / 2);
+    let cell = [dx, dy, thickness].map(|mm| ((CELL_MM / mm).round() as usize).max(1));
+    let size: [usize; 3] = std::array::from_fn(|a| stack.size[a].div_ceil(cell[a]));
+    let coarse = Stack {
+        size,
+        pixel_mm: [dx * cell[0] as f64, dy * cell[1] as f64],
+        heights_mm: (0..size[2]).map(|k| thickness * (cell[2] * k) as f64).collect(),
+    };
+    let mut sums = [0, 1, 2].map(|_| vec![0.0_f32; coarse.voxels()]);
+    for (place, values) in seen {
+        let at = coarse.index(std::array::from_fn(|a| (place[a] / cell[a]).min(size[a] - 1)));
+        for (sum, value) in sums.iter_mut().zip([values[0], values[1], 1.0]) {
+            sum[at] += value as f32;
+        }
+    }
+    let [outside, end, rays] = sums.map(|v| gaussian(&coarse, &v, [CELL_MM; 3]));
+    let mean = |sum: Vec<f32>, usual: f64| {
+        let of = |(s, w): (f32, &f32)| (s + USUAL_RAYS * usual as f32) / (w + USUAL_RAYS);
+        sum.into_iter().zip(&rays).map(of).collect()
+    };
+    Some(Shares {
+        dark: at(darks, DARK_SHARE),
+        outside: usual[0],
+        outsides: mean(outside, usual[0]),
+        ends: mean(end, usual[1]),
+        cell,
+        size,
+    })
+}
+
+/// The darkest place of a ray, at most `shell` from its start, before it gets brighter by [`RISE`].
+fn valley(ray: &[f64], shell: usize) -> Option<usize> {
+    let mut darkest = 0;
+    for (n, &level) in ray.iter().enumerate() {
+        if level < ray[darkest] {
+            darkest = n;
+        } else if level > ray[darkest] + RISE && ray[darkest] < 1.0 - RISE {
+            return (darkest <= shell).then_some(darkest);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slice_is_linear_between_its_pixels() {
+        let slice = Slice { values: &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0], columns: 3 };
+        assert_eq!(slice.at([0.25, 0.5]), 1.75);
+        assert_eq!((slice.at([-3.0, 0.0]), slice.at([9.0, 9.0])), (0.0, 5.0));
+        assert_eq!(Slice { values: &[7.0], columns: 1 }.at([0.4, 0.4]), 7.0);
+    }
+
+    #[test]
+    fn the_first_valley_counts_and_it_has_two_sides() {
+        assert_eq!(valley(&[1.0, 0.6, 0.2, 0.25, 0.5, 0.1, 0.6], 6), Some(2));
+        assert_eq!(valley(&[1.0, 0.6, 0.2, 0.25, 0.5, 0.1, 0.6], 1), None);
+        assert_eq!(valley(&[1.0, 0.6, 0.2, 0.2], 3), None);
+        assert_eq!(valley(&[1.0, 1.05, 1.2, 1.4], 3), None);
+    }
 }

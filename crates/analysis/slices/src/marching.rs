@@ -5,9 +5,24 @@
 //! as `beyond`, so every curve is closed. What is above the level lies to the left of a curve in (i, j), so that outer curves
 //! have positive area and holes a negative one.
 
+/// What hangs together where two opposite corners of a cell are above the level and two below.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Saddles {
+    /// What the bilinear interpolant says.
+    Bilinear,
+    /// What is above the level: a part one pixel wide that runs askew stays one.
+    Joined,
+}
+
 /// The curves of one slice, in pixels; those of fewer than three different points are left out. `field` holds `columns` x
 /// rows values, row by row.
-pub(crate) fn contours(field: &[f32], columns: usize, level: f32, beyond: f32) -> Vec<Vec<[f64; 2]>> {
+pub(crate) fn contours(
+    field: &[f32],
+    columns: usize,
+    level: f32,
+    beyond: f32,
+    saddles: Saddles,
+) -> Vec<Vec<[f64; 2]>> {
     let rows = field.len().checked_div(columns).unwrap_or(0);
     if rows == 0 {
         return Vec::new();
@@ -37,7 +52,7 @@ pub(crate) fn contours(field: &[f32], columns: usize, level: f32, beyond: f32) -
             let enters = |e: usize| !inside[e] && inside[(e + 1) % 4];
             // On a saddle: whether the two corners inside hang together.
             let [a, b, c, d] = f.map(f64::from);
-            let joined = (a * c - b * d) / (a + c - b - d) > f64::from(level);
+            let joined = saddles == Saddles::Joined || (a * c - b * d) / (a + c - b - d) > f64::from(level);
             for from in (0..4).filter(|&e| leaves(e)) {
                 let forward = [1, 2, 3].map(|s| (from + s) % 4);
                 let backward = [3, 2, 1].map(|s| (from + s) % 4);
@@ -91,7 +106,7 @@ mod tests {
                 (15.0 - r).min(r - 6.0)
             })
             .collect();
-        let found = contours(&field, columns, 0.0, -9.0);
+        let found = contours(&field, columns, 0.0, -9.0, Saddles::Bilinear);
         let mut areas: Vec<f64> = found.iter().map(|c| signed_area(c)).collect();
         areas.sort_by(f64::total_cmp);
         assert_eq!(areas.len(), 2);
@@ -102,10 +117,11 @@ mod tests {
     #[test]
     fn saddles_are_decided_by_the_bilinear_middle() {
         // Saddle value (0.9 * 0.9 - 0.4 * 0.4) / (2 * 0.9 - 2 * 0.4) = 0.65 is above 0.5: one curve; the other way two.
-        assert_eq!(contours(&[0.9, 0.4, 0.4, 0.9], 2, 0.5, 0.0).len(), 1);
-        assert_eq!(contours(&[0.6, 0.1, 0.1, 0.6], 2, 0.5, 0.0).len(), 2);
-        assert_eq!(contours(&[0.4, 0.9, 0.9, 0.4], 2, 0.5, 0.0).len(), 1);
-        assert_eq!(contours(&[0.1, 0.6, 0.6, 0.1], 2, 0.5, 0.0).len(), 2);
+        assert_eq!(contours(&[0.9, 0.4, 0.4, 0.9], 2, 0.5, 0.0, Saddles::Bilinear).len(), 1);
+        assert_eq!(contours(&[0.6, 0.1, 0.1, 0.6], 2, 0.5, 0.0, Saddles::Bilinear).len(), 2);
+        assert_eq!(contours(&[0.4, 0.9, 0.9, 0.4], 2, 0.5, 0.0, Saddles::Bilinear).len(), 1);
+        assert_eq!(contours(&[0.1, 0.6, 0.6, 0.1], 2, 0.5, 0.0, Saddles::Bilinear).len(), 2);
+        assert_eq!(contours(&[0.1, 0.6, 0.6, 0.1], 2, 0.5, 0.0, Saddles::Joined).len(), 1);
     }
 
     #[test]
@@ -114,7 +130,7 @@ mod tests {
         for _ in 0..20 {
             let (columns, rows) = (17, 13);
             let field: Vec<f32> = (0..columns * rows).map(|_| rng.random::<f32>()).collect();
-            let found = contours(&field, columns, 0.5, 0.0);
+            let found = contours(&field, columns, 0.5, 0.0, Saddles::Bilinear);
             for (v, f) in field.iter().enumerate() {
                 let p = [(v % columns) as f64, (v / columns) as f64];
                 let winding: i32 = found.iter().map(|c| crate::ring::winding(c, p)).sum();
@@ -128,10 +144,10 @@ mod tests {
 
     #[test]
     fn what_touches_the_border_is_closed() {
-        let found = contours(&[1.0; 6], 3, 0.5, 0.0);
+        let found = contours(&[1.0; 6], 3, 0.5, 0.0, Saddles::Bilinear);
         assert_eq!(found.len(), 1);
         // 3 x 2 pixels with their outer halves, less the four corners cut by diagonals of half a pixel.
         assert!((signed_area(&found[0]) - (3.0 * 2.0 - 4.0 * 0.125)).abs() < 1e-9);
-        assert!(contours(&[], 0, 0.5, 0.0).is_empty());
+        assert!(contours(&[], 0, 0.5, 0.0, Saddles::Bilinear).is_empty());
     }
 }

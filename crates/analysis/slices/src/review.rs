@@ -29,7 +29,7 @@ fn sizes(slice: &ContourSlice, pixel_mm: [f64; 2]) -> Option<Sizes> {
     (area > 0.0 && length > 0.0).then(|| Sizes { area, centroid: moment.map(|m| m / area), length })
 }
 
-/// Adds the flags that can be told from the contours alone. `thickness_mm` is that of each slice.
+/// Adds the flags that can be told from the contours alone.
 pub(crate) fn flag(contours: &mut SliceContours, pixel_mm: [f64; 2], heights_mm: &[f64]) {
     let all: Vec<Option<Sizes>> = contours.slices.iter().map(|s| sizes(s, pixel_mm)).collect();
     let (Some(first), Some(last)) =
@@ -37,34 +37,34 @@ pub(crate) fn flag(contours: &mut SliceContours, pixel_mm: [f64; 2], heights_mm:
     else {
         return;
     };
-    // By how much a slice is off the line between its neighbours: its outline as a whole, and its place, mm.
+    // By how much a slice is off the line through two others: its outline as a whole, and its place, mm.
+    let off_line = |k: usize, [a, b]: [usize; 2]| {
+        let (here, a_sizes, b_sizes) = (all[k].as_ref()?, all.get(a)?.as_ref()?, all.get(b)?.as_ref()?);
+        let t = (heights_mm[k] - heights_mm[a]) / (heights_mm[b] - heights_mm[a]);
+        let on_line = |a: f64, b: f64| a + (b - a) * t;
+        let length = here.length.max(a_sizes.length).max(b_sizes.length);
+        let grown = (here.area - on_line(a_sizes.area, b_sizes.area)).abs() / length;
+        let moved = (0..2)
+            .map(|n| here.centroid[n] - on_line(a_sizes.centroid[n], b_sizes.centroid[n]))
+            .fold(0.0, |sum: f64, d| sum.hypot(d));
+        Some(grown.max(moved))
+    };
+    // Where a part of the bone begins or ends, a slice goes with those on one side; a bad one goes with none.
     let odd: Vec<Option<f64>> = (0..all.len())
         .map(|k| {
-            let (before, here, after) = (all.get(k.checked_sub(1)?)?, all[k].as_ref()?, all.get(k + 1)?);
-            let (before, after) = (before.as_ref()?, after.as_ref()?);
-            let t = (heights_mm[k] - heights_mm[k - 1]) / (heights_mm[k + 1] - heights_mm[k - 1]);
-            let between = |a: f64, b: f64| a + (b - a) * t;
-            let length = here.length.max(before.length).max(after.length);
-            let grown = (here.area - between(before.area, after.area)).abs() / length;
-            let moved = (0..2)
-                .map(|a| here.centroid[a] - between(before.centroid[a], after.centroid[a]))
-                .fold(0.0, |sum: f64, d| sum.hypot(d));
-            Some(grown.max(moved))
+            let between = off_line(k, [k.checked_sub(1)?, k + 1])?;
+            let before = k.checked_sub(2).and_then(|two| off_line(k, [two, k - 1]));
+            let after = off_line(k, [k + 1, k + 2]);
+            Some(before.unwrap_or(between).min(after.unwrap_or(between)).min(between))
         })
         .collect();
     let mut known: Vec<f64> = odd.iter().flatten().copied().collect();
     known.sort_by(f64::total_cmp);
     let usual = known.get(known.len() / 2).copied().unwrap_or(0.0);
     let limit = LEAST_MM.max(USUAL * usual);
-    let jumped = |k: usize| odd[k].is_some_and(|o| o > limit);
-    // One bad slice makes its neighbours odd as well, by half as much: only the worst of three is flagged.
-    let worst = |k: usize| {
-        let of = |n: Option<usize>| n.and_then(|n| odd.get(n).copied().flatten()).unwrap_or(0.0);
-        of(Some(k)) >= of(k.checked_sub(1)) && of(Some(k)) >= of(Some(k + 1))
-    };
     for k in 0..all.len() {
         let slice = &mut contours.slices[k];
-        if jumped(k) && worst(k) {
+        if odd[k].is_some_and(|o| o > limit) {
             slice.flags.push(SliceFlag::Jumped);
         }
         if (first..=last).contains(&k) && all[k].is_none() {

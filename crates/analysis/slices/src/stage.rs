@@ -77,8 +77,8 @@ impl Default for SlicesParams {
             seed_mm: None,
             contrast: Contrast::Dark,
             shell_mm: 6.0,
-            tolerance: 0.2,
-            leak_mm: 1.5,
+            tolerance: 0.15,
+            leak_mm: 2.0,
         }
     }
 }

@@ -168,32 +168,44 @@ fn both_bones_of_the_simulated_knee_are_found_from_one_seed_each() {
     for (bone, seed) in [("femur", [-4.0, 0.0, 20.0]), ("tibia", [2.0, 0.0, -25.0])] {
         let volume = nrrd(&folder.join(format!("mri/{bone}.nrrd")));
         let mesh = stl(&folder.join(format!("models/{bone}_15000.stl")));
-        for across in [biplane_slices::Across::Scanned, biplane_slices::Across::Stored] {
-            let params =
-                SlicesParams { method: Method::Bone, seed_mm: Some(seed), across, ..SlicesParams::default() };
-            let start = std::time::Instant::now();
-            let contours = slice_contours(&volume, &params, &Context::new()).unwrap();
-            println!("{:?} {:?}", contours.warnings, start.elapsed());
-            for (k, s) in contours.slices.iter().enumerate().filter(|s| !s.1.flags.is_empty()) {
-                println!("slice {k}: {:?}", s.flags);
-            }
-            let off = distances(&contours, &mesh);
-            let mut sizes: Vec<f64> = off.iter().map(|d| d.abs()).collect();
-            sizes.sort_by(f64::total_cmp);
-            let at = |share: f64| sizes[((sizes.len() - 1) as f64 * share) as usize];
-            let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
-            let mean = off.iter().sum::<f64>() / off.len() as f64;
-            println!(
-                "{bone}: {} points, mean {mean:+.3}, rms {rms:.3}, median {:.3}, 95 % {:.3}, worst {:.3} mm",
-                off.len(),
-                at(0.5),
-                at(0.95),
-                at(1.0)
-            );
-            if let Ok(folder) = std::env::var("SLICES_OUT") {
-                use biplane_artifact::Artifact;
-                std::fs::write(format!("{folder}/{bone}_{across:?}.json"), contours.encode()).unwrap();
-            }
+        let params = SlicesParams { method: Method::Bone, seed_mm: Some(seed), ..SlicesParams::default() };
+        let contours = slice_contours(&volume, &params, &Context::new()).unwrap();
+        let off = distances(&contours, &mesh);
+        let mut sizes: Vec<f64> = off.iter().map(|d| d.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let at = |share: f64| sizes[((sizes.len() - 1) as f64 * share) as usize];
+        let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        let (median, most, worst) = (at(0.5), at(0.95), at(1.0));
+        println!(
+            "{bone}: {} points, mean {mean:+.3}, rms {rms:.3}, median {median:.3}, 95 % {most:.3}, worst {worst:.3} mm",
+            off.len()
+        );
+        // Measured 0.056 and 0.51 (femur), 0.051 and 0.33 (tibia); what is asked for is an rms of 0.15.
+        assert!(rms < 0.08 && worst < 0.8, "{bone}: rms {rms}, worst {worst} mm");
+    }
+}
+
+#[test]
+fn the_tibia_of_a_real_map_of_labels_lies_where_a_third_party_has_it() {
+    let Some(folder) = folder("real/knee-mri") else { return };
+    let volume = nrrd(&folder.join("knee-labels.nrrd"));
+    let start = std::time::Instant::now();
+    for label in [5, 6] {
+        let params = SlicesParams { label, ..SlicesParams::default() };
+        let contours = slice_contours(&volume, &params, &Context::new()).unwrap();
+        let rings: usize = contours.slices.iter().map(|s| s.contours.len()).sum();
+        let flagged: Vec<_> = contours
+            .slices
+            .iter()
+            .enumerate()
+            .filter(|s| !s.1.flags.is_empty())
+            .map(|(k, s)| (k, &s.flags))
+            .collect();
+        println!("label {label}: {rings} contours {flagged:?} {:?}", start.elapsed());
+        if let Ok(folder) = std::env::var("SLICES_OUT") {
+            use biplane_artifact::Artifact;
+            std::fs::write(format!("{folder}/labels_{label}.json"), contours.encode()).unwrap();
         }
     }
 }
