@@ -17,6 +17,8 @@ use crate::convert::{ConvertArguments, ConvertError, convert};
 use crate::correct::{By, CorrectError, correct};
 use crate::diagnostics::slashes;
 use crate::doctor::{DoctorError, doctor};
+use crate::edit::{EditCommandError, Wish, edit};
+use crate::edit_list::{EditListError, list};
 use crate::logging::{self, LogFormat};
 use crate::look::{Fate, LookError, counts, look};
 use crate::outcome::Outcome;
@@ -24,6 +26,9 @@ use crate::run::{RunError, run};
 use crate::study::{Study, StudyError};
 use crate::tables::{PoseTable, TableError};
 use crate::{init, reference, summary};
+
+/// Outlines to look at that are listed at the end of a run.
+const FEW_OUTLINES: usize = 20;
 
 /// How a command ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,7 +100,8 @@ enum Command {
   biplane run study/pipeline.toml --threads 4
 
 Stop it with Ctrl-C at any time: finished frames are kept, and the same command goes on.
-To correct a pose, write a row into edits/poses.csv beside the pipeline file and run again.")]
+To correct a pose, write a row into edits/poses.csv beside the pipeline file and run again;
+to correct an outline, `biplane edit`.")]
     Run {
         #[command(flatten)]
         pipeline: Pipeline,
@@ -125,6 +131,41 @@ To correct a pose, write a row into edits/poses.csv beside the pipeline file and
         /// Cached items too.
         #[arg(long)]
         all: bool,
+    },
+    /// Write outlines of bodies for a person to put right: drawings that Inkscape opens, in edits/ beside the pipeline file.
+    #[command(after_help = "Examples:
+  biplane edit lunge 17 A           edits/lunge/0017_A.svg: the outlines in one picture
+  biplane edit lunge 17             in every view of a frame
+  biplane edit --flagged            where little of an outline was found, or the match is not good
+  biplane edit lunge 17 A --csv     as a table, for CAD or MATLAB
+
+The next run takes what a person changed in place of its own outlines, for that picture and those bodies alone. A file that nobody
+changed is no edit, and no file is overwritten.")]
+    Edit {
+        /// The trial; with none, every picture that asks to be looked at.
+        trial: Option<String>,
+        /// The frame; with none, every picture of the trial that asks to be looked at.
+        frame: Option<String>,
+        /// The view; with none, all of them.
+        view: Option<String>,
+        /// Every picture that asks to be looked at.
+        #[arg(long, conflicts_with = "frame")]
+        flagged: bool,
+        /// Tables, not drawings.
+        #[arg(long)]
+        csv: bool,
+        /// Where an edit is there already, write what the program finds beside it, as `.new`.
+        #[arg(long)]
+        again: bool,
+        /// The pipeline file, or the folder it lies in.
+        #[arg(short, long, default_value = "pipeline.toml")]
+        pipeline: PathBuf,
+    },
+    /// List the edited contours: whether they are used, and how far they moved the outlines.
+    #[command(after_help = "Exit code 1 where a file cannot be used, or is of no picture of the study.")]
+    Edits {
+        #[command(flatten)]
+        pipeline: Pipeline,
     },
     /// Say whether the calibration still fits the frames: with the matches of the last run, do the views agree, has the
     /// picture moved on the detector, how sure can a pose be?
@@ -268,6 +309,29 @@ fn obey(command: Command) -> Ended {
                 _ => print(&(shown.join("\n") + "\n")),
             }
             Ok(End::Good)
+        }
+        Command::Edit { trial, frame, view, flagged: _, csv, again, pipeline } => {
+            let [trial, frame, view] = [&trial, &frame, &view].map(Option::as_deref);
+            let wish = Wish { trial, frame, view, csv, again };
+            let text = edit(load(&pipeline)?, &wish).map_err(|error| {
+                let end = match &error {
+                    EditCommandError::Exists(_) | EditCommandError::NoSuch { .. } => End::BadConfiguration,
+                    EditCommandError::Store(_) | EditCommandError::Write { .. } => End::Internal,
+                    _ => End::BadInput,
+                };
+                (end, error.to_string())
+            })?;
+            print(&text);
+            Ok(End::Good)
+        }
+        Command::Edits { pipeline } => {
+            let (text, well) = list(load(&pipeline.file)?).map_err(|error| {
+                let end =
+                    if matches!(error, EditListError::Store(_)) { End::Internal } else { End::BadInput };
+                (end, error.to_string())
+            })?;
+            print(&text);
+            Ok(if well { End::Good } else { End::SomeFailed })
         }
         Command::Doctor { pipeline, trial } => {
             let found = doctor(load(&pipeline.file)?, trial.as_deref()).map_err(|error| {
@@ -456,6 +520,34 @@ fn calibration_line(outcome: &Outcome) -> String {
     text + "\n"
 }
 
+/// The outlines that a person should look at, and the edits that were used.
+fn to_look_at(study: &Study, outcome: &Outcome) -> String {
+    let mut text = String::new();
+    let [used, untouched] = outcome.edits;
+    if used + untouched > 0 {
+        text += &format!(
+            "Edited contours: {used} file(s) used, {untouched} not edited yet (`biplane edits` lists them).\n"
+        );
+    }
+    let flagged = outcome.flagged().count();
+    if flagged == 0 {
+        return text;
+    }
+    text += &format!(
+        "\nLook at these outlines ({flagged}); `biplane edit --flagged` writes drawings to put them right:\n"
+    );
+    for (frame, body, slot, why) in outcome.flagged().take(FEW_OUTLINES) {
+        let trial = &study.trials[frame.trial];
+        let view = trial.frames.get(slot).map_or("", |(view, _)| study.views[*view].name.as_str());
+        let body = &study.bodies[body.body].name;
+        text += &format!("  {} {} {view}, {body}: {}\n", trial.name, frame.label, why.join(", "));
+    }
+    if flagged > FEW_OUTLINES {
+        text += &format!("  ... and {} more in the report\n", flagged - FEW_OUTLINES);
+    }
+    text
+}
+
 /// What a run says at its end.
 fn closing(study: &Study, outcome: &Outcome) -> String {
     let mut text = calibration_line(outcome);
@@ -478,6 +570,7 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
             text += &format!("  {}: {}\n", failure.item, failure.message);
         }
     }
+    text += &to_look_at(study, outcome);
     let rows = good + doubtful + failed;
     if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
         text += "\nHardly a match is good. Check first: are the folders (or calibrations) of two views exchanged? Do the\n\

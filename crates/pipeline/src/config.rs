@@ -4,10 +4,11 @@
 //! keep their place in the file ([`Located`]), so that what [`crate::study`] finds wrong points at its line. `flatten`
 //! and tagged enums are avoided: they lose those places.
 
+use biplane_contour::ContourParams;
 use biplane_distortion::DistortionParams;
 use biplane_environment::EnvironmentParams;
 use biplane_optimisation::MatchParams;
-use biplane_segmentation::SegmentParams;
+use biplane_segmentation::{SegmentParams, TraceParams};
 use biplane_spots::{Look, SpotSettings};
 use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
@@ -48,9 +49,15 @@ pub struct PipelineFile {
     /// How edges are found in the pictures.
     #[serde(default)]
     pub segment: SegmentParams,
+    /// How contours that a person drew are taken.
+    #[serde(default)]
+    pub edit: TraceParams,
     /// How poses are found from the edges.
     #[serde(default, rename = "match")]
     pub matching: MatchParams,
+    /// How edges are chosen for the outline of a posed body, and when a person should look.
+    #[serde(default)]
+    pub contour: ContourParams,
     /// Limits of `biplane doctor`.
     #[serde(default)]
     pub doctor: DoctorSection,

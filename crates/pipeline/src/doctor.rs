@@ -7,21 +7,21 @@
 
 use std::collections::BTreeMap;
 
-use biplane_artifact::{Calibration, Circle, Environment, Match, Verdict};
+use biplane_artifact::{Calibration, Circle, ContentHash, Environment, Match, Verdict};
 use biplane_environment::pixel_by_parameters;
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
 use biplane_optimisation::{Disagreement, EdgeField, View, disagreement, pose_covariance_of_calibration};
 use biplane_outline::RimMesh;
 use biplane_spots::find_border;
-use biplane_stage::{Context, Hashed, Store, StoreError};
+use biplane_stage::{Context, Hashed, Store, StoreError, Stored};
 use nalgebra::{DMatrix, Matrix2xX};
 use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, Calibrated, Way, calibrate};
 use crate::logging::Progress;
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::steps::{Steps, read_stored};
+use crate::steps::{Standing, Steps, read_stored};
 use crate::study::Study;
 use crate::summary::aligned;
 
@@ -162,30 +162,32 @@ impl Looking<'_> {
 
     /// The matches of a frame; none unless everything that it takes is in the store.
     fn matches(&self, job: &Job) -> Option<Vec<Matched>> {
-        let mut curves = Vec::new();
-        for slot in 0..job.pictures.len() {
-            curves.push(self.steps.explain_segment(job, slot).ok()?.1?);
-        }
+        let Standing { automatic, drawn } = self.steps.standing(job)?;
         let mut found_here = Vec::new();
-        let mut views: Option<Vec<View>> = None;
+        // Bodies share them unless a person drew one of them.
+        let mut views: Option<(Vec<ContentHash>, Vec<View>)> = None;
         for (place, (body, ..)) in job.bodies.iter().enumerate() {
+            let Ok(Some(curves)) = self.steps.explain_curves(job, place, &automatic, &drawn) else {
+                continue;
+            };
             let Ok((_, Some(stored))) = self.steps.explain_match(job, place, &curves) else { continue };
             let Ok(found) = read_stored(self.steps.store, &stored) else { continue };
             // What a wrong calibration made doubtful speaks too.
             if found.verdict == Verdict::Failed {
                 continue;
             }
-            if views.is_none() {
+            let hashes: Vec<ContentHash> = curves.iter().map(Stored::hash).collect();
+            if views.as_ref().is_none_or(|(of, _)| *of != hashes) {
                 let made = curves.iter().enumerate().map(|(slot, stored)| {
                     let curves = read_stored(self.steps.store, stored).ok()?;
                     let fluoroscope = self.fluoroscope(self.steps.view(job, slot).0);
                     Some(View { edges: EdgeField::new(&curves, fluoroscope.distortion()), fluoroscope })
                 });
-                views = made.collect();
+                views = made.collect::<Option<_>>().map(|made| (hashes, made));
             }
             let pose = Pose::from(found.pose);
             let search = self.study().matching.search();
-            let pair = views.as_deref().and_then(|v| v.get(..2));
+            let pair = views.as_ref().and_then(|(_, v)| v.get(..2));
             let disagreement = pair.and_then(|pair| disagreement(&self.meshes[*body], pair, &pose, &search));
             found_here.push(Matched { body: *body, pose, found: Match::clone(&found), disagreement });
         }

@@ -4,8 +4,9 @@ use biplane_stage::{Context, Explanation, Item, Store, StoreError};
 use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, Way, calibrate};
+use crate::edits::Drawn;
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::steps::{ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
+use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
 use crate::study::Study;
 use crate::summary::aligned;
 
@@ -86,23 +87,55 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
         let (fate, line) = match steps.explain_segment(job, slot) {
             Ok((why, stored)) => {
                 let fate = if why.cached() { Fate::Cached } else { Fate::Runs };
-                curves.extend(stored);
+                curves.push(stored);
                 (fate, why.to_string())
             }
-            Err(error) => (Fate::Fails, format!("{SEGMENT}/{item}: {}", study.shorten(&error.to_string()))),
+            Err(error) => {
+                curves.push(None);
+                (Fate::Fails, format!("{SEGMENT}/{item}: {}", study.shorten(&error.to_string())))
+            }
         };
         looks.push(Look { step: SEGMENT, fate, line });
     }
+    let drawn: Vec<Option<Drawn>> =
+        (0..job.pictures.len()).map(|slot| drawn_in(steps, job, slot, &mut looks)).collect();
     let fails = looks.iter().any(|l| l.fate == Fate::Fails);
     let mut matches = Vec::new();
     for (place, (body, _, _)) in job.bodies.iter().enumerate() {
+        let mut own = Vec::new();
+        for (slot, drawn) in drawn.iter().enumerate() {
+            let automatic = curves.get(slot).and_then(Option::as_ref);
+            let Some(edit) = drawn.as_ref().and_then(|d| d.of(place)) else {
+                own.extend(automatic.cloned());
+                continue;
+            };
+            let item = steps.item_of_body(job, slot, place);
+            looks.push(match automatic {
+                Some(automatic) => after(steps, EDIT, &item, false, true, || {
+                    let (why, stored) = steps.explain_trace(job, slot, place, automatic, edit)?;
+                    own.extend(stored);
+                    Ok(why)
+                }),
+                None => after(steps, EDIT, &item, fails, false, || Err(ItemError::Cancelled)),
+            });
+        }
         let item = steps.item(job, &study.bodies[*body].name);
-        let ready = curves.len() == job.pictures.len() && !steps.calibrations.is_empty();
+        let ready = own.len() == job.pictures.len() && !steps.calibrations.is_empty();
+        let mut matched = None;
         looks.push(after(steps, MATCH, &item, fails, ready, || {
-            let (why, stored) = steps.explain_match(job, place, &curves)?;
-            matches.extend(stored.map(|s| s.promise()));
+            let (why, stored) = steps.explain_match(job, place, &own)?;
+            matched = stored.map(|s| s.promise());
             Ok(why)
         }));
+        for (slot, curves) in (0..job.pictures.len()).map(|slot| (slot, own.get(slot))) {
+            let item = steps.item_of_body(job, slot, place);
+            let ready = curves.zip(matched).filter(|_| own.len() == job.pictures.len());
+            looks.push(after(steps, CONTOUR, &item, fails, ready.is_some(), || match ready {
+                Some((curves, matched)) => Ok(steps.explain_contour(job, slot, place, curves, matched)?.0),
+                None => Err(ItemError::Cancelled),
+            }));
+        }
+        matches.extend(matched);
     }
     for slot in 0..job.pictures.len() {
         let item = steps.item(job, steps.view(job, slot).1);
@@ -110,6 +143,17 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
         looks.push(after(steps, OVERLAY, &item, fails, ready, || steps.explain_overlay(job, slot, &matches)));
     }
     looks
+}
+
+/// What a person drew in a picture; a look at what cannot be read.
+fn drawn_in(steps: &Steps<'_>, job: &Job, slot: usize, looks: &mut Vec<Look>) -> Option<Drawn> {
+    // A picture that cannot be used was said already.
+    steps.picture(job, slot).ok()?;
+    steps.drawn(job, slot).unwrap_or_else(|error| {
+        let item = steps.item(job, steps.view(job, slot).1);
+        looks.push(Look { step: EDIT, fate: Fate::Fails, line: format!("{EDIT}/{item}: {error}") });
+        None
+    })
 }
 
 /// A look at an item that follows others: `fails` if one of them cannot be done, `ready` if all are in the store.
@@ -122,7 +166,7 @@ fn after(
     explain: impl FnOnce() -> Result<Explanation, ItemError>,
 ) -> Look {
     let (fate, line) = if fails {
-        (Fate::Fails, format!("{step}/{item}: cannot run, a picture of its frame fails"))
+        (Fate::Fails, format!("{step}/{item}: cannot run, a picture of its frame (or an edit) fails"))
     } else if ready {
         match explain() {
             Ok(why) => (if why.cached() { Fate::Cached } else { Fate::Runs }, why.to_string()),

@@ -40,12 +40,30 @@ pub struct BodyOutcome {
     pub start_pose: Pose,
     /// The match, or why there is none.
     pub result: Result<Match, String>,
+    /// Its outline in each view, in the order of the trial's views; empty where there is no match.
+    pub contours: Vec<ContourOutcome>,
+}
+
+/// The outline of a body in one picture.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ContourOutcome {
+    /// Whether a person drew it.
+    pub edited: bool,
+    /// Why a person should look at it; none where one drew it.
+    pub flags: Vec<String>,
 }
 
 impl BodyOutcome {
     /// The verdict; a match that could not be made has failed.
     pub fn verdict(&self) -> Verdict {
         self.result.as_ref().map_or(Verdict::Failed, |m| m.verdict)
+    }
+
+    /// The views (by their place in the trial) whose outline a person should look at, and why. A match that failed is looked at anyway.
+    pub fn flagged(&self) -> impl Iterator<Item = (usize, &[String])> {
+        let open = self.verdict() != Verdict::Failed;
+        let views = self.contours.iter().enumerate().filter(move |(_, c)| open && !c.flags.is_empty());
+        views.map(|(slot, c)| (slot, c.flags.as_slice()))
     }
 
     /// Why the verdict is not good; empty if it is.
@@ -112,6 +130,8 @@ pub struct Outcome {
     pub warnings: Vec<String>,
     /// In order.
     pub failures: Vec<Failure>,
+    /// Files of edits that were used, and those that nobody changed since they were written.
+    pub edits: [usize; 2],
     /// Name of a step and its count, in the order of the steps.
     pub steps: Vec<(&'static str, StepCount)>,
 }
@@ -120,6 +140,11 @@ impl Outcome {
     /// All bodies in all frames.
     pub fn rows(&self) -> impl Iterator<Item = (&FrameOutcome, &BodyOutcome)> {
         self.frames.iter().flat_map(|f| f.bodies.iter().map(move |b| (f, b)))
+    }
+
+    /// The outlines that a person should look at: frame, body, the view's place in the trial, and why.
+    pub fn flagged(&self) -> impl Iterator<Item = (&FrameOutcome, &BodyOutcome, usize, &[String])> {
+        self.rows().flat_map(|(frame, body)| body.flagged().map(move |(slot, why)| (frame, body, slot, why)))
     }
 
     /// How many verdicts are good, doubtful and failed.

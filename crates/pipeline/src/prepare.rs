@@ -23,6 +23,7 @@ use biplane_spots::{Look, SpotParams};
 use biplane_stage::{Hashed, ParamsText};
 
 use crate::config;
+use crate::edits;
 use crate::outcome::StartKind;
 use crate::sources::{InputIndex, MeshFacts};
 use crate::starts::{starts_of, unused_edits, unused_starts};
@@ -50,6 +51,8 @@ pub struct Job {
     pub pictures: Vec<FrameSource>,
     /// Index of each body, where its start came from, and the start.
     pub bodies: Vec<(usize, StartKind, Hashed<Start>)>,
+    /// Files of what a person drew in each picture; more than one is a fault.
+    pub edits: Vec<Vec<PathBuf>>,
 }
 
 /// A study ready to be run or looked at.
@@ -65,12 +68,18 @@ pub struct Prepared {
     pub meshes: Vec<Model>,
     /// In the order of trials and frames.
     pub jobs: Vec<Job>,
+    /// Files in `edits/` that are of no picture, and why.
+    pub stray_edits: Vec<(PathBuf, String)>,
     /// Worth a look.
     pub warnings: Vec<String>,
     /// Parameters of the step `segment`.
     pub segment: ParamsText,
+    /// Parameters of the step `edit`.
+    pub edit: ParamsText,
     /// Parameters of the step `match`.
     pub matching: ParamsText,
+    /// Parameters of the step `contour`.
+    pub contour: ParamsText,
     /// Parameters of the step `overlay`: none.
     pub overlay: ParamsText,
     pictures: Pictures,
@@ -203,7 +212,7 @@ impl Prepared {
             warnings
                 .extend(mesh.facts.notes.iter().map(|note| format!("body {} ({file}): {note}", body.name)));
         }
-        let edits = study.edits();
+        let edits = study.edited_poses();
         let has_edits = edits.is_file();
         let edits = if has_edits { faults.keep(PoseTable::read(&edits)) } else { None };
         let mut tables: BTreeMap<&Path, PoseTable> = BTreeMap::new();
@@ -259,24 +268,44 @@ impl Prepared {
                     let (kind, pose) = found.get(place)?;
                     Some((*body, kind.clone(), Hashed::new(Start(*pose))))
                 });
-                jobs.push(Job { trial: number, label, time_s, bodies: bodies.collect(), pictures: sources });
+                let edits = vec![Vec::new(); sources.len()];
+                jobs.push(Job {
+                    trial: number,
+                    label,
+                    time_s,
+                    bodies: bodies.collect(),
+                    pictures: sources,
+                    edits,
+                });
             }
         }
+        let stray_edits = edits::find(&study, &mut jobs);
+        warnings.extend(
+            stray_edits.iter().map(|(path, why)| format!("{} is not used: {why}", study.relative(path))),
+        );
         let segment = faults.keep(ParamsText::of(&study.segment));
+        let edit = faults.keep(ParamsText::of(&study.edit));
         let matching = faults.keep(ParamsText::of(&study.matching));
+        let contour = faults.keep(ParamsText::of(&study.contour));
         let overlay = faults.keep(ParamsText::of(&()));
         let warnings: Vec<String> = warnings.iter().map(|w| study.shorten(w)).collect();
-        match (equipment, segment, matching, overlay, faults.list) {
-            (Some(equipment), Some(segment), Some(matching), Some(overlay), list) if list.is_empty() => {
+        let parameters = segment.zip(edit).zip(matching).zip(contour).zip(overlay);
+        match (equipment, parameters, faults.list) {
+            (Some(equipment), Some(((((segment, edit), matching), contour), overlay)), list)
+                if list.is_empty() =>
+            {
                 Ok(Self {
                     study,
                     index,
                     equipment,
                     meshes,
                     jobs,
+                    stray_edits,
                     warnings,
                     segment,
+                    edit,
                     matching,
+                    contour,
                     overlay,
                     pictures,
                 })

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 13] = [
+const ORDER: [&str; 15] = [
     "study",
     "fluoroscope",
     "plate",
@@ -19,7 +19,9 @@ const ORDER: [&str; 13] = [
     "distortion",
     "environment",
     "segment",
+    "edit",
     "match",
+    "contour",
     "doctor",
     "output",
 ];

@@ -38,6 +38,7 @@ struct Row {
     share: String,
     sigma: Option<[String; 2]>,
     start: &'static str,
+    look: String,
 }
 
 #[derive(Serialize)]
@@ -76,6 +77,7 @@ struct TrialPart {
     views: Vec<String>,
     timed: bool,
     explained: bool,
+    outlined: bool,
     lines: Vec<Line>,
     rows: Vec<Row>,
     cards: Vec<Card>,
@@ -119,6 +121,7 @@ struct Page<'a> {
     doubtful: usize,
     failed: usize,
     frames: usize,
+    flagged: usize,
     views: Vec<&'a str>,
     warnings: &'a [String],
     calibration: Option<CalibrationPart>,
@@ -142,6 +145,7 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
         doubtful,
         failed,
         frames: outcome.frames.len(),
+        flagged: outcome.flagged().count(),
         views: study.views.iter().map(|v| v.name.as_str()).collect(),
         warnings: &outcome.warnings,
         calibration: calibration_part(&outcome.calibration),
@@ -223,6 +227,7 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
                     .filter(|sigma| sigma.iter().all(|s| *s < UNKNOWN))
                     .map(|sigma| sigma.map(|s| format!("{s:.3}"))),
                 start: body.start.word(),
+                look: look(body, &views),
             });
         }
         let pictures = frame.overlays.iter().map(|(view, path)| Shown {
@@ -238,10 +243,20 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
         views,
         timed: rows.iter().any(|r: &Row| !r.time.is_empty()),
         explained: rows.iter().any(|r| !r.reason.is_empty()),
+        outlined: rows.iter().any(|r| !r.look.is_empty()),
         lines,
         rows,
         cards,
     }
+}
+
+/// Which views' outlines a person should look at, and which ones a person drew.
+fn look(body: &BodyOutcome, views: &[String]) -> String {
+    let view = |slot: usize| views.get(slot).map_or("", String::as_str);
+    let edited = body.contours.iter().enumerate().filter(|(_, c)| c.edited);
+    let edited = edited.map(|(slot, _)| format!("{}: edited by hand", view(slot)));
+    let flagged = body.flagged().map(|(slot, flags)| format!("{}: {}", view(slot), flags.join(", ")));
+    edited.chain(flagged).collect::<Vec<_>>().join("; ")
 }
 
 /// The colour of a trial's body in the overlays.
@@ -339,7 +354,9 @@ mod tests {
             environment: Default::default(),
             doctor: Default::default(),
             segment: Default::default(),
+            edit: Default::default(),
             matching: Default::default(),
+            contour: Default::default(),
             output: "/study/results".into(),
         }
     }
@@ -355,6 +372,7 @@ mod tests {
                 start: StartKind::File,
                 start_pose: biplane_geometry::Pose::identity(),
                 result: Err("a < b".into()),
+                contours: vec![],
             }],
             overlays: vec![(0, format!("overlays/lunge/{i:04}_A.png").into())],
         };

@@ -7,19 +7,22 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use biplane_artifact::Match;
-use biplane_stage::{Context, Hashed, How, Store, StoreError};
+use biplane_artifact::{Contour, Curves, Match};
+use biplane_stage::{Context, Hashed, How, Item, Store, StoreError, Stored};
 use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, Calibrated, Way, calibrate};
 use crate::diagnostics::slashes;
+use crate::edits::Drawn;
 use crate::logging::Progress;
 use crate::made::Made;
-use crate::outcome::{BodyOutcome, Failure, FrameOutcome, Outcome, StepCount};
+use crate::outcome::{BodyOutcome, ContourOutcome, Failure, FrameOutcome, Outcome, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
-use crate::steps::{DISTORTION, ENVIRONMENT, ItemError, MATCH, OVERLAY, SEGMENT, SPOTS, STEPS, Steps};
+use crate::steps::{
+    CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, MATCH, OVERLAY, SEGMENT, SPOTS, STEPS, Steps,
+};
 use crate::study::{Plate, PlateSource, Study, ViewSource};
 
 /// Why a run came to no end.
@@ -64,16 +67,15 @@ pub enum RunError {
     },
 }
 
-/// The steps of a frame.
-const OF_FRAMES: [&str; 3] = [SEGMENT, MATCH, OVERLAY];
-
-/// What one frame gave, its counts in the order of its steps.
+/// What one frame gave.
 struct Frame {
     outcome: FrameOutcome,
     failures: Vec<Failure>,
     warnings: Vec<String>,
-    counts: [StepCount; OF_FRAMES.len()],
+    counts: BTreeMap<&'static str, StepCount>,
     inputs: Vec<(String, String)>,
+    /// Files of edits that were used, and those that nobody changed.
+    edits: [usize; 2],
     /// Overlays and the hashes of their bytes.
     made: Vec<(String, String)>,
 }
@@ -178,8 +180,9 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         },
         failures: Vec::new(),
         warnings: Vec::new(),
-        counts: [StepCount::default(); OF_FRAMES.len()],
+        counts: BTreeMap::new(),
         inputs: Vec::new(),
+        edits: [0; 2],
         made: Vec::new(),
     };
     let slots: Vec<_> =
@@ -195,61 +198,198 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
                 if source.index_in_file > 0 { format!("#{}", source.index_in_file) } else { String::new() };
             frame.inputs.push((study.relative(&source.path) + &part, facts.hash().to_hex()));
         }
-        match result {
-            Ok((stored, how)) => {
-                count(&mut frame, 0, &name, &how);
-                curves.push(stored);
-            }
-            Err(ItemError::Cancelled) => return None,
-            Err(ItemError::Failed(message)) => {
-                let message = study.shorten(&message);
-                frame.counts[0].failed += 1;
-                frame.failures.push(Failure { item: name.clone(), message });
-                missing.get_or_insert(format!("{name} failed"));
-            }
+        match frame.keep(study, SEGMENT, &name, result)? {
+            Ok(stored) => curves.push(stored),
+            Err(_) => _ = missing.get_or_insert(format!("{name} failed")),
         }
     }
+    let drawn = drawn_in_frame(steps, job, &mut frame, &mut missing)?;
     let bodies: Vec<_> = (0..job.bodies.len())
         .into_par_iter()
         .map(|place| match &missing {
-            Some(message) => Err(ItemError::Failed(message.clone())),
-            None => steps.matching(job, place, &curves),
+            Some(message) => Err(message.clone()),
+            None => Ok(run_body(steps, job, place, &curves, &drawn)),
         })
         .collect();
     let mut matches = Vec::new();
-    for ((body, start, pose), result) in job.bodies.iter().zip(bodies) {
-        let name = format!("{MATCH}/{}", steps.item(job, &study.bodies[*body].name));
+    for (place, ((body, start, pose), result)) in job.bodies.iter().zip(bodies).enumerate() {
+        let mut contours = Vec::new();
         let result = match result {
-            Ok((found, how)) => {
-                count(&mut frame, 1, &name, &how);
-                let result = Ok(Match::clone(&found));
-                matches.push(found);
-                result
-            }
-            Err(ItemError::Cancelled) => return None,
-            Err(ItemError::Failed(message)) => {
-                let message = study.shorten(&message);
-                frame.counts[1].failed += 1;
-                // What only follows from another failure is not listed again.
-                if missing.is_none() {
-                    frame.failures.push(Failure { item: name, message: message.clone() });
-                }
+            // What only follows from another failure is not listed again.
+            Err(message) => {
+                frame.counts.entry(MATCH).or_default().failed += 1;
                 Err(message)
             }
+            Ok(body) => keep_body(steps, job, place, body, &mut frame, &mut matches, &mut contours)?,
         };
         frame.outcome.bodies.push(BodyOutcome {
             body: *body,
             start: start.clone(),
             start_pose: pose.0,
             result,
+            contours,
         });
     }
     if matches.len() == job.bodies.len() {
         overlays(steps, job, &matches, &mut frame)?;
     } else {
-        frame.counts[2].failed += job.pictures.len();
+        frame.counts.entry(OVERLAY).or_default().failed += job.pictures.len();
     }
     Some(frame)
+}
+
+/// What a person drew in the pictures of a frame; `None` if the run was stopped.
+fn drawn_in_frame(
+    steps: &Steps<'_>,
+    job: &Job,
+    frame: &mut Frame,
+    missing: &mut Option<String>,
+) -> Option<Vec<Option<Drawn>>> {
+    let study = &steps.prepared.study;
+    let mut all = Vec::new();
+    for slot in 0..job.pictures.len() {
+        // A picture that cannot be used was counted already.
+        let result = if steps.picture(job, slot).is_ok() { steps.drawn(job, slot) } else { Ok(None) };
+        let drawn = match result {
+            Ok(drawn) => drawn,
+            Err(ItemError::Cancelled) => return None,
+            Err(ItemError::Failed(message)) => {
+                let name = format!("{EDIT}/{}", steps.item(job, steps.view(job, slot).1));
+                missing.get_or_insert(format!("{name} failed"));
+                frame.counts.entry(EDIT).or_default().failed += 1;
+                frame.failures.push(Failure { item: name, message });
+                None
+            }
+        };
+        if let Some(drawn) = &drawn {
+            let used = drawn.bodies.iter().filter(|b| b.touched);
+            frame.inputs.extend(used.clone().map(|b| {
+                let body = &study.bodies[job.bodies[b.place].0].name;
+                (format!("{} ({body})", drawn.file), b.contour.hash().to_hex())
+            }));
+            frame.edits[usize::from(used.count() == 0)] += 1;
+            frame.warnings.extend(drawn.warnings.iter().cloned());
+        }
+        all.push(drawn);
+    }
+    Some(all)
+}
+
+/// What became of one body of a frame, item by item.
+struct BodyRun {
+    traced: Vec<(Item, Result<How, ItemError>)>,
+    matched: Done<Hashed<Match>>,
+    /// With whether a person drew it.
+    contours: Vec<(Item, Done<Hashed<Contour>>, bool)>,
+}
+
+/// Brings one body of a frame from the curves, or what a person drew in their place, to its pose and its outlines.
+fn run_body(
+    steps: &Steps<'_>,
+    job: &Job,
+    place: usize,
+    automatic: &[Stored<Curves>],
+    drawn: &[Option<Drawn>],
+) -> BodyRun {
+    let mut traced = Vec::new();
+    let mut curves = Vec::new();
+    let edit_of = |slot: usize| drawn.get(slot)?.as_ref()?.of(place);
+    for (slot, stored) in automatic.iter().enumerate() {
+        let Some(edit) = edit_of(slot) else {
+            curves.push(stored.clone());
+            continue;
+        };
+        let result = steps.trace(job, slot, place, stored, edit).map(|(stored, how)| {
+            curves.push(stored);
+            how
+        });
+        traced.push((steps.item_of_body(job, slot, place), result));
+    }
+    if curves.len() < automatic.len() {
+        let failed = traced.iter().find(|(_, result)| result.is_err());
+        let name = failed.map(|(item, _)| format!("{EDIT}/{item} failed")).unwrap_or_default();
+        return BodyRun { traced, matched: Err(ItemError::Failed(name)), contours: Vec::new() };
+    }
+    let matched = steps.matching(job, place, &curves);
+    let contours = matched.iter().flat_map(|(found, _)| {
+        curves.iter().enumerate().map(move |(slot, curves)| {
+            let result = steps.contour(job, slot, place, curves, found);
+            (steps.item_of_body(job, slot, place), result, edit_of(slot).is_some())
+        })
+    });
+    let contours = contours.collect();
+    BodyRun { traced, matched, contours }
+}
+
+/// Counts what became of a body; `None` if the run was stopped.
+fn keep_body(
+    steps: &Steps<'_>,
+    job: &Job,
+    place: usize,
+    body: BodyRun,
+    frame: &mut Frame,
+    matches: &mut Vec<Hashed<Match>>,
+    contours: &mut Vec<ContourOutcome>,
+) -> Option<Result<Match, String>> {
+    let study = &steps.prepared.study;
+    let mut follows = false;
+    for (item, result) in body.traced {
+        let name = format!("{EDIT}/{item}");
+        follows |= frame.keep(study, EDIT, &name, result.map(|how| ((), how)))?.is_err();
+    }
+    let name = format!("{MATCH}/{}", steps.item(job, &study.bodies[job.bodies[place].0].name));
+    let result = match body.matched {
+        Err(ItemError::Failed(message)) if follows => {
+            frame.counts.entry(MATCH).or_default().failed += 1;
+            Err(message)
+        }
+        result => frame.keep(study, MATCH, &name, result)?,
+    };
+    for (item, result, edited) in body.contours {
+        let name = format!("{CONTOUR}/{item}");
+        let found = frame.keep(study, CONTOUR, &name, result)?;
+        // Where a person drew, a person has looked.
+        let flags = found.ok().filter(|_| !edited).map(|found| found.flags.clone());
+        contours.push(ContourOutcome { edited, flags: flags.unwrap_or_default() });
+    }
+    Some(result.map(|found| {
+        let own = Match::clone(&found);
+        matches.push(found);
+        own
+    }))
+}
+
+impl Frame {
+    /// Counts an item, and lists it if it failed; `None` if the run was stopped.
+    fn keep<T>(
+        &mut self,
+        study: &Study,
+        step: &'static str,
+        item: &str,
+        result: Done<T>,
+    ) -> Option<Result<T, String>> {
+        let count = self.counts.entry(step).or_default();
+        match result {
+            Ok((found, how)) => {
+                match how {
+                    How::Cached => count.cached += 1,
+                    How::Ran => count.ran += 1,
+                    How::Remade(damage) => {
+                        count.ran += 1;
+                        self.warnings.push(format!("{item} was made again: {damage}"));
+                    }
+                }
+                Some(Ok(found))
+            }
+            Err(ItemError::Cancelled) => None,
+            Err(ItemError::Failed(message)) => {
+                let message = study.shorten(&message);
+                count.failed += 1;
+                self.failures.push(Failure { item: item.to_owned(), message: message.clone() });
+                Some(Err(message))
+            }
+        }
+    }
 }
 
 /// Draws the overlays of a frame and copies them to the results; `None` if the run was stopped.
@@ -262,36 +402,20 @@ fn overlays(steps: &Steps<'_>, job: &Job, matches: &[Hashed<Match>], frame: &mut
         let name = format!("{OVERLAY}/{}", steps.item(job, view_name));
         let place = Path::new("overlays").join(&study.trials[job.trial].name);
         let place = place.join(format!("{}_{view_name}.png", job.label));
-        let message = match result {
-            Ok((stored, how)) => {
-                count(frame, 2, &name, &how);
-                match copy_if_other(stored.path(), &study.output.join(&place)) {
-                    Ok(()) => {
-                        frame.made.push((slashes(&place), stored.hash().to_hex()));
-                        frame.outcome.overlays.push((view, place));
-                        continue;
-                    }
-                    Err(error) => format!("cannot write {}: {error}", slashes(&study.output.join(&place))),
-                }
+        let Ok(stored) = frame.keep(study, OVERLAY, &name, result)? else { continue };
+        match copy_if_other(stored.path(), &study.output.join(&place)) {
+            Ok(()) => {
+                frame.made.push((slashes(&place), stored.hash().to_hex()));
+                frame.outcome.overlays.push((view, place));
             }
-            Err(ItemError::Cancelled) => return None,
-            Err(ItemError::Failed(message)) => message,
-        };
-        frame.counts[2].failed += 1;
-        frame.failures.push(Failure { item: name, message: study.shorten(&message) });
-    }
-    Some(())
-}
-
-fn count(frame: &mut Frame, step: usize, item: &str, how: &How) {
-    match how {
-        How::Cached => frame.counts[step].cached += 1,
-        How::Ran => frame.counts[step].ran += 1,
-        How::Remade(damage) => {
-            frame.counts[step].ran += 1;
-            frame.warnings.push(format!("{item} was made again: {damage}"));
+            Err(error) => {
+                let message = format!("cannot write {}: {error}", slashes(&study.output.join(&place)));
+                frame.counts.entry(OVERLAY).or_default().failed += 1;
+                frame.failures.push(Failure { item: name, message: study.shorten(&message) });
+            }
         }
     }
+    Some(())
 }
 
 /// Finds the fluoroscopes, or takes them from files; counts what was done.
@@ -343,7 +467,7 @@ fn gather(
     let mut outcome = Outcome { warnings, ..Outcome::default() };
     let mut inputs: BTreeMap<String, String> = provenance.inputs.drain(..).collect();
     for frame in frames {
-        for (step, part) in OF_FRAMES.into_iter().zip(frame.counts) {
+        for (step, part) in frame.counts {
             if let Some((_, sum)) = steps.iter_mut().find(|(name, _)| *name == step) {
                 sum.cached += part.cached;
                 sum.ran += part.ran;
@@ -354,6 +478,9 @@ fn gather(
             tracing::warn!("{warning}");
         }
         inputs.extend(frame.inputs);
+        for (sum, part) in outcome.edits.iter_mut().zip(frame.edits) {
+            *sum += part;
+        }
         outcome.warnings.extend(frame.warnings);
         outcome.failures.extend(frame.failures);
         outcome.frames.push(frame.outcome);
@@ -397,7 +524,9 @@ fn provenance(prepared: &Prepared) -> Provenance {
         inputs.push((study.relative(&body.mesh), mesh.facts.hash().to_hex()));
     }
     parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));
+    parameters.push((EDIT.to_owned(), text(toml::to_string(&study.edit))));
     parameters.push((MATCH.to_owned(), text(toml::to_string(&study.matching))));
+    parameters.push((CONTOUR.to_owned(), text(toml::to_string(&study.contour))));
     Provenance { parameters, inputs }
 }
 
@@ -420,7 +549,7 @@ mod tests {
 
     fn body(result: Result<Match, String>) -> BodyOutcome {
         let start_pose = biplane_geometry::Pose::identity();
-        BodyOutcome { body: 0, start: crate::outcome::StartKind::File, start_pose, result }
+        BodyOutcome { body: 0, start: crate::outcome::StartKind::File, start_pose, result, contours: vec![] }
     }
 
     #[test]
@@ -435,7 +564,8 @@ mod tests {
             },
             failures: vec![],
             warnings: vec!["w".into()],
-            counts: [StepCount { cached: 1, ran, failed: 0 }, StepCount::default(), StepCount::default()],
+            counts: BTreeMap::from([(SEGMENT, StepCount { cached: 1, ran, failed: 0 })]),
+            edits: [1, 0],
             inputs: vec![("b".into(), "2".into()), ("a".into(), "1".into())],
             made: vec![],
         };

@@ -1,16 +1,19 @@
 //! The steps of the method as items of a study: what each reads, its name in the store, how it runs and is explained.
 //!
-//! `segment/<trial>/<frame>/<view>` makes curves from a picture, `match/<trial>/<frame>/<body>` a pose from the curves of
-//! all views, `overlay/<trial>/<frame>/<view>` a picture with the outlines of the posed bodies.
+//! `segment/<trial>/<frame>/<view>` makes curves from a picture, `edit/<trial>/<frame>/<view>/<body>` from what a person drew in it,
+//! `match/<trial>/<frame>/<body>` a pose from the curves of all views, `contour/<trial>/<frame>/<view>/<body>` says which curves are
+//! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies.
 
-use biplane_artifact::{Artifact, Calibration, Curves, Match, Picture};
+use biplane_artifact::{Artifact, Calibration, Contour, Curves, EditedContour, Match, Picture};
+use biplane_contour::{ContourInputs, ContourOf};
 use biplane_optimisation::{MatchBody, MatchInputs};
-use biplane_segmentation::{Segment, SegmentInputs};
+use biplane_segmentation::{Segment, SegmentInputs, Trace, TraceInputs};
 use biplane_stage::{
     Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, Promise, Promised, Stage, Store,
     StoreError, Stored,
 };
 
+use crate::edits::{self, Drawn};
 use crate::overlay::{Overlay, OverlayInputs};
 use crate::prepare::{Job, Prepared};
 use crate::sources::FrameFacts;
@@ -26,12 +29,17 @@ pub const ENVIRONMENT: &str = "environment";
 pub const DRAWING: &str = "drawing";
 /// Step of edge curves.
 pub const SEGMENT: &str = "segment";
+/// Step of curves along what a person drew.
+pub const EDIT: &str = "edit";
 /// Step of poses.
 pub const MATCH: &str = "match";
+/// Step of the curves that are outlines.
+pub const CONTOUR: &str = "contour";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 7] = [SPOTS, DISTORTION, ENVIRONMENT, DRAWING, SEGMENT, MATCH, OVERLAY];
+pub const STEPS: [&str; 9] =
+    [SPOTS, DISTORTION, ENVIRONMENT, DRAWING, SEGMENT, EDIT, MATCH, CONTOUR, OVERLAY];
 
 /// Why an item has no output.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -46,6 +54,18 @@ pub enum ItemError {
 
 /// Why an item would run, and its output if it is there.
 pub type Explained<A> = Result<(Explanation, Option<Stored<A>>), ItemError>;
+
+/// An item's output and how it was come by.
+pub type Done<A> = Result<(A, How), ItemError>;
+
+/// What of a frame's pictures is in the store and up to date, one a view.
+#[derive(Debug)]
+pub struct Standing {
+    /// Their curves.
+    pub automatic: Vec<Stored<Curves>>,
+    /// What a person drew in them.
+    pub drawn: Vec<Option<Drawn>>,
+}
 
 impl ItemError {
     pub(crate) fn of(error: impl std::fmt::Display) -> Self {
@@ -113,7 +133,7 @@ impl Steps<'_> {
     ///
     /// # Errors
     /// The picture cannot be used, the stage failed, or the store did.
-    pub fn segment(&self, job: &Job, slot: usize) -> Result<(Stored<Curves>, How), ItemError> {
+    pub fn segment(&self, job: &Job, slot: usize) -> Done<Stored<Curves>> {
         let facts = self.picture(job, slot)?;
         let promised = SegmentInputs::<Promised> { frame: facts.promise(), mask: Vec::new() };
         let load = || {
@@ -126,6 +146,179 @@ impl Steps<'_> {
             .execute::<Segment, _>(SEGMENT, &item, &self.prepared.segment, &promised, load, self.context)
             .map(|done| (done.output, done.how))
             .map_err(|e| self.failed(job, Some(slot), e))
+    }
+
+    /// What a person drew in a picture, if anything.
+    ///
+    /// # Errors
+    /// The picture or the file cannot be used.
+    pub fn drawn(&self, job: &Job, slot: usize) -> Result<Option<Drawn>, ItemError> {
+        let facts = self.picture(job, slot)?;
+        edits::read(&self.prepared.study, job, slot, &facts).map_err(ItemError::Failed)
+    }
+
+    /// Name of the item of a body in one picture.
+    pub fn item_of_body(&self, job: &Job, slot: usize, place: usize) -> Item {
+        let study = &self.prepared.study;
+        let (trial, body) = (&study.trials[job.trial].name, &study.bodies[job.bodies[place].0].name);
+        Item::of([trial.as_str(), &job.label, self.view(job, slot).1, body])
+    }
+
+    fn trace_promised(
+        &self,
+        job: &Job,
+        slot: usize,
+        curves: &Stored<Curves>,
+        edit: &Hashed<EditedContour>,
+    ) -> Result<TraceInputs<Promised>, ItemError> {
+        let frame = self.picture(job, slot)?.promise();
+        Ok(TraceInputs { frame, curves: curves.promise(), edit: edit.promise() })
+    }
+
+    /// Brings what a person drew for a body to curves.
+    ///
+    /// # Errors
+    /// The picture cannot be used, the stage failed, or the store did.
+    pub fn trace(
+        &self,
+        job: &Job,
+        slot: usize,
+        place: usize,
+        curves: &Stored<Curves>,
+        edit: &Hashed<EditedContour>,
+    ) -> Done<Stored<Curves>> {
+        let promised = self.trace_promised(job, slot, curves, edit)?;
+        let load = || -> Result<TraceInputs, String> {
+            let frame = self.prepared.read(&job.pictures[slot]).map_err(|e| e.to_string())?;
+            let curves = read_stored(self.store, curves)?;
+            Ok(TraceInputs { frame: Hashed::new(frame), curves, edit: edit.clone() })
+        };
+        let item = self.item_of_body(job, slot, place);
+        self.store
+            .execute::<Trace, _>(EDIT, &item, &self.prepared.edit, &promised, load, self.context)
+            .map(|done| (done.output, done.how))
+            .map_err(|e| self.failed(job, Some(slot), e))
+    }
+
+    /// Why what a person drew would be worked on, and its curves if they are there.
+    ///
+    /// # Errors
+    /// The picture cannot be used, or the store cannot.
+    pub fn explain_trace(
+        &self,
+        job: &Job,
+        slot: usize,
+        place: usize,
+        curves: &Stored<Curves>,
+        edit: &Hashed<EditedContour>,
+    ) -> Explained<Curves> {
+        let parts =
+            KeyParts::of::<Trace>(&self.prepared.edit, &self.trace_promised(job, slot, curves, edit)?);
+        self.explain::<Trace>(EDIT, &self.item_of_body(job, slot, place), &parts)
+    }
+
+    /// The curves that a body is matched to, one a view: what a person drew where there is such, the `automatic` ones elsewhere. `None`
+    /// where they are not in the store.
+    ///
+    /// # Errors
+    /// A picture cannot be used, or the store cannot.
+    pub fn explain_curves(
+        &self,
+        job: &Job,
+        place: usize,
+        automatic: &[Stored<Curves>],
+        drawn: &[Option<Drawn>],
+    ) -> Result<Option<Vec<Stored<Curves>>>, ItemError> {
+        let slots = automatic.iter().zip(drawn).enumerate();
+        let own = slots.map(|(slot, (curves, drawn))| match drawn.as_ref().and_then(|d| d.of(place)) {
+            None => Ok(Some(curves.clone())),
+            Some(edit) => Ok(self.explain_trace(job, slot, place, curves, edit)?.1),
+        });
+        own.collect()
+    }
+
+    /// What a frame's bodies are matched to; `None` unless all of it is there.
+    pub fn standing(&self, job: &Job) -> Option<Standing> {
+        let slots = 0..job.pictures.len();
+        let automatic =
+            slots.clone().map(|slot| self.explain_segment(job, slot).ok()?.1).collect::<Option<_>>()?;
+        let drawn = slots.map(|slot| self.drawn(job, slot).ok()).collect::<Option<_>>()?;
+        Some(Standing { automatic, drawn })
+    }
+
+    fn contour_promised(
+        &self,
+        job: &Job,
+        slot: usize,
+        place: usize,
+        curves: &Stored<Curves>,
+        matched: Promise<Match>,
+    ) -> ContourInputs<Promised> {
+        ContourInputs {
+            curves: curves.promise(),
+            calibration: self.calibrations[self.view(job, slot).0].promise(),
+            model: self.prepared.meshes[job.bodies[place].0].facts.promise(),
+            matched,
+        }
+    }
+
+    /// All that says which curves of a picture are the outline of a posed body.
+    ///
+    /// # Errors
+    /// The curves or the mesh cannot be read any more.
+    pub fn contour_inputs(
+        &self,
+        job: &Job,
+        slot: usize,
+        place: usize,
+        curves: &Stored<Curves>,
+        matched: &Hashed<Match>,
+    ) -> Result<ContourInputs, String> {
+        Ok(ContourInputs {
+            curves: read_stored(self.store, curves)?,
+            calibration: self.calibrations[self.view(job, slot).0].clone(),
+            model: self.prepared.meshes[job.bodies[place].0].load()?,
+            matched: matched.clone(),
+        })
+    }
+
+    /// Finds the outline of a posed body among the curves of a picture.
+    ///
+    /// # Errors
+    /// The stage failed, or the store did.
+    pub fn contour(
+        &self,
+        job: &Job,
+        slot: usize,
+        place: usize,
+        curves: &Stored<Curves>,
+        matched: &Hashed<Match>,
+    ) -> Done<Hashed<Contour>> {
+        let promised = self.contour_promised(job, slot, place, curves, matched.promise());
+        let load = || self.contour_inputs(job, slot, place, curves, matched);
+        let item = self.item_of_body(job, slot, place);
+        let done = self
+            .store
+            .execute::<ContourOf, _>(CONTOUR, &item, &self.prepared.contour, &promised, load, self.context)
+            .map_err(|e| self.failed(job, None, e))?;
+        Ok((read_stored(self.store, &done.output).map_err(ItemError::Failed)?, done.how))
+    }
+
+    /// Why the outline of a body would be looked for, and what it is if it is there.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn explain_contour(
+        &self,
+        job: &Job,
+        slot: usize,
+        place: usize,
+        curves: &Stored<Curves>,
+        matched: Promise<Match>,
+    ) -> Explained<Contour> {
+        let promised = self.contour_promised(job, slot, place, curves, matched);
+        let parts = KeyParts::of::<ContourOf>(&self.prepared.contour, &promised);
+        self.explain::<ContourOf>(CONTOUR, &self.item_of_body(job, slot, place), &parts)
     }
 
     fn match_promised(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> MatchInputs<Promised> {
@@ -144,12 +337,7 @@ impl Steps<'_> {
     ///
     /// # Errors
     /// The stage failed, or the store did.
-    pub fn matching(
-        &self,
-        job: &Job,
-        place: usize,
-        curves: &[Stored<Curves>],
-    ) -> Result<(Hashed<Match>, How), ItemError> {
+    pub fn matching(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> Done<Hashed<Match>> {
         let (body, _, start) = &job.bodies[place];
         let load = || -> Result<MatchInputs, String> {
             Ok(MatchInputs {
@@ -189,12 +377,7 @@ impl Steps<'_> {
     ///
     /// # Errors
     /// The stage failed, or the store did.
-    pub fn overlay(
-        &self,
-        job: &Job,
-        slot: usize,
-        matches: &[Hashed<Match>],
-    ) -> Result<(Stored<Picture>, How), ItemError> {
+    pub fn overlay(&self, job: &Job, slot: usize, matches: &[Hashed<Match>]) -> Done<Stored<Picture>> {
         let facts = self.picture(job, slot)?;
         let (view, name) = self.view(job, slot);
         let load = || -> Result<OverlayInputs, String> {

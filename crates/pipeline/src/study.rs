@@ -7,10 +7,11 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use biplane_contour::{ContourError, ContourParams};
 use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
 use biplane_optimisation::{MatchError, MatchParams};
-use biplane_segmentation::{SegmentError, SegmentParams};
+use biplane_segmentation::{SegmentError, SegmentParams, TraceError, TraceParams};
 use biplane_spots::{Look, SpotError, SpotSettings};
 
 use crate::config::{
@@ -44,8 +45,12 @@ pub struct Study {
     pub environment: EnvironmentParams,
     /// How edges are found.
     pub segment: SegmentParams,
+    /// How drawn contours are taken.
+    pub edit: TraceParams,
     /// How poses are found.
     pub matching: MatchParams,
+    /// How edges are chosen for outlines.
+    pub contour: ContourParams,
     /// Limits of `doctor`.
     pub doctor: DoctorSection,
     /// Folder of results.
@@ -174,15 +179,20 @@ pub enum StudyError {
 }
 
 impl Study {
-    /// Where a person's own poses are read from; a run never writes there.
+    /// Where a person's own work is read from; a run never writes there.
     pub fn edits(&self) -> PathBuf {
-        self.root.join("edits").join("poses.csv")
+        self.root.join("edits")
+    }
+
+    /// Where a person's own poses are read from.
+    pub fn edited_poses(&self) -> PathBuf {
+        self.edits().join("poses.csv")
     }
 
     /// Where a person's own correspondences of a view's plate or bead pictures are read from (`plate_A.csv`, `beads_A.csv`); a
     /// run never writes there.
     pub fn clicks(&self, what: &str, view: &str) -> PathBuf {
-        self.root.join("edits").join(format!("{what}_{view}.csv"))
+        self.edits().join(format!("{what}_{view}.csv"))
     }
 
     /// Whether the fluoroscopes are found from raw pictures.
@@ -230,6 +240,14 @@ impl Study {
             };
             check.list.push(parameter(&text, "segment", key, &error.to_string()));
         }
+        if let Err(error) = file.edit.check() {
+            let TraceError::Parameter { name, .. } = &error;
+            check.list.push(parameter(&text, "edit", Some(*name), &error.to_string()));
+        }
+        if let Err(error) = file.contour.check() {
+            let ContourError::Parameter { name, .. } = &error;
+            check.list.push(parameter(&text, "contour", Some(*name), &error.to_string()));
+        }
         if let Err(error) = file.matching.check() {
             let key = match &error {
                 MatchError::Parameter { name, .. } => Some(*name),
@@ -275,7 +293,9 @@ impl Check {
             body,
             trial,
             segment,
+            edit,
             matching,
+            contour,
             doctor,
             output,
         } = file;
@@ -325,7 +345,9 @@ impl Check {
             distortion,
             environment,
             segment,
+            edit,
             matching,
+            contour,
             doctor,
             output: folder,
         }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibration;
+mod edits;
 mod messages;
 mod scene;
 mod study;

@@ -47,13 +47,13 @@ fn images_become_poses_and_a_second_run_does_nothing() {
     std::fs::File::options().write(true).open(&path).unwrap().set_modified(modified).unwrap();
     let (code, again, _) = scene.biplane(&["run"]);
     assert_eq!(code, 0);
-    assert!(again.contains("Nothing to do: 15 items cached."), "{again}");
+    assert!(again.contains("Nothing to do: 21 items cached."), "{again}");
     let table = |text: &str| text.split("\n\n").next().unwrap().to_owned();
     assert_eq!(table(&out), table(&again));
     let after: Vec<_> = ["poses.csv", "report.html"].map(|f| scene.read(&format!("results/{f}"))).into();
     assert_eq!(before, after);
     assert_eq!(std::fs::metadata(scene.path("results/poses.csv")).unwrap().modified().unwrap(), written);
-    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 15 items are cached\n");
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 21 items are cached\n");
 }
 
 #[test]
@@ -74,9 +74,10 @@ fn an_edit_wins_over_a_start_and_runs_only_its_frame() {
     let (_, why, _) = scene.biplane(&["explain"]);
     // Frame 1 starts halfway between 0 and 2, so it changes too.
     let expected = [1, 2].map(|f| {
-        let overlay =
-            |view| format!("overlay/squat/000{f}/{view}: runs if what it follows comes out differently\n");
-        format!("match/squat/000{f}/box: input start changed\n{}{}", overlay("A"), overlay("B"))
+        let after = |item: &str| format!("{item}: runs if what it follows comes out differently\n");
+        let contours = ["A/box", "B/box"].map(|last| after(&format!("contour/squat/000{f}/{last}")));
+        let overlays = ["A", "B"].map(|last| after(&format!("overlay/squat/000{f}/{last}")));
+        format!("match/squat/000{f}/box: input start changed\n{}{}", contours.concat(), overlays.concat())
     });
     assert_eq!(why, expected.concat());
     let (code, out, _) = scene.biplane(&["run"]);
@@ -91,7 +92,7 @@ fn a_changed_parameter_is_explained_and_a_comment_is_none() {
     let scene = Scene::new();
     assert_eq!(scene.biplane(&["run"]).0, 0);
     scene.edit("search_px = 20.0", "# as far as starts are wrong\nsearch_px = 20.0\nseed = 1");
-    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 15 items are cached\n");
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 21 items are cached\n");
     scene.edit("search_px = 20.0", "search_px = 25.0");
     let (_, why, _) = scene.biplane(&["explain", "match/*/0001"]);
     assert_eq!(why, "match/squat/0001/box: parameter search_px changed from 20 to 25\n");
@@ -144,7 +145,7 @@ fn results_can_be_starts_and_are_shown_by_status() {
     let (_, status, _) = scene.biplane(&["status"]);
     assert!(status.contains("3 good, 0 doubtful, 0 failed (results/poses.csv)"), "{status}");
     let (_, cleaned, _) = scene.biplane(&["clean"]);
-    assert!(cleaned.starts_with("freed 9 entries"), "{cleaned}");
+    assert!(cleaned.starts_with("freed 15 entries"), "{cleaned}");
 }
 
 #[test]
@@ -197,7 +198,12 @@ fn one_view_is_a_study_too() {
     scene.edit(", B = \"frames/B\"", "");
     let (code, out, err) = scene.biplane(&["run"]);
     assert!(code < 2, "{out}{err}");
-    assert!(out.contains("segment 3 run, 0 cached; match 3 run, 0 cached; overlay 3 run, 0 cached"), "{out}");
+    assert!(
+        out.contains(
+            "segment 3 run, 0 cached; match 3 run, 0 cached; contour 3 run, 0 cached; overlay 3 run, 0 cached"
+        ),
+        "{out}"
+    );
 }
 
 #[test]
