@@ -26,6 +26,10 @@ pub(crate) fn gaussian(stack: &Stack, values: &[f32], sigma_mm: [f64; 3]) -> Vec
         for block in values.chunks_exact_mut(count * step) {
             line.fill(0.0);
             for (n, (first, weights)) in taps.iter().enumerate() {
+                if step == 1 {
+                    line[n] = weights.iter().zip(&block[*first..]).map(|(w, f)| w * f).sum();
+                    continue;
+                }
                 let out = &mut line[n * step..(n + 1) * step];
                 for (m, weight) in weights.iter().enumerate() {
                     let from = &block[(first + m) * step..(first + m + 1) * step];

@@ -41,7 +41,7 @@ const DARK: f64 = 0.25;
 /// The shell is nowhere thicker than this times what it is on the whole around there.
 const END: f64 = 1.5;
 /// Part of a slice's thickness over which marrow may fade before the shell is dark.
-const SPREAD: f64 = 0.75;
+const SPREAD: f64 = 1.0;
 /// A surface that a slice spreads over more pixels than this has no edge in it.
 const MOST_LEAN_PX: f64 = 5.0;
 /// Spacing of the contours' points, pixels.
@@ -256,7 +256,8 @@ fn enclosed(
     });
     let mut bone: Vec<bool> = grow::reached(stack, open, border).into_iter().map(|beyond| !beyond).collect();
     let pixel_mm2 = stack.pixel_mm[0] * stack.pixel_mm[1];
-    fill_gaps(stack, &mut bone, (shell_mm * shell_mm / pixel_mm2) as usize, |v| off[v] <= reach(v));
+    let small = std::f64::consts::PI * shell_mm * shell_mm / pixel_mm2;
+    fill_gaps(stack, &mut bone, small as usize, |v| off[v] <= reach(v));
     bone
 }
 

@@ -105,6 +105,7 @@ pub(crate) fn shares(
         let columns = stack.size[0];
         let slice = Slice { values: &smooth[span.clone()], columns };
         let level = Slice { values: &levels[span.clone()], columns };
+        let own = Slice { values: &marrow[span.clone()], columns };
         for found in marching::contours(&marrow[span], columns, 0.5, 0.0, Saddles::Bilinear) {
             let scaled: Vec<Plane> = found.iter().map(|p| [p[0] * dx, p[1] * dy]).collect();
             let points = ring::resampled(&scaled, 2.0 * pixel);
@@ -115,7 +116,12 @@ pub(crate) fn shares(
                     (0..=shell + beyond).map(|m| slice.at(px(m as f64 * step)) / here).collect();
                 let Some(darkest) = valley(&ray, shell) else { continue };
                 let first = darkest + (1.5 * pixel / step) as usize;
-                let mut after: Vec<f64> = ray.iter().skip(first).take(beyond).copied().collect();
+                let last = ray.len().min(first + beyond);
+                // A ray that comes to marrow again says nothing of what is outside.
+                if (first..last).any(|m| own.at(px(m as f64 * step)) > 0.0) {
+                    continue;
+                }
+                let mut after = ray[first.min(last)..last].to_vec();
                 after.sort_by(f64::total_cmp);
                 // The upper quartile: a part of the way may still be in a shell that leans.
                 if let Some(&outside) = after.get(after.len() * 3 / 4) {

@@ -85,7 +85,7 @@ fn labels_are_followed_to_a_fraction_of_a_voxel() {
         ("ball", &ball, 0.365, 0.7),
         ("ball", &ball, 0.625, 4.0),
         ("femur", femur, 0.5, 1.0),
-        ("tibia", tibia, 0.365, 0.7),
+        ("tibia", tibia, 0.5, 0.7),
     ] {
         let grid = SliceGrid::covering(solid.bounds(), 5.0, 0, pixel, slice);
         let contours = of_labels(solid, &grid);
@@ -178,12 +178,13 @@ fn scan(
 
 #[test]
 fn bones_are_found_from_a_seed() {
-    // Limits in mm: rms, median, 95 %, worst; beside them what was measured.
+    // Limits in mm: rms, median, 95 %, worst. Measured with 1 mm slices: 0.050, 0.027, 0.095, 0.40; with 3 mm: 0.197, 0.058,
+    // 0.49, 1.07; with 2 mm across the shaft: 0.128, 0.041, 0.30, 0.67.
     for (body, across, size, faults, limits) in [
         (Body::DistalFemur, 0, [0.5, 1.0], MriFaults::usual(5), [0.08, 0.04, 0.14, 0.7]),
         (Body::ProximalTibia, 0, [0.5, 1.0], MriFaults::usual(7), [0.08, 0.04, 0.14, 0.8]),
-        (Body::DistalFemur, 0, [0.625, 3.0], MriFaults::usual(8), [0.5, 0.1, 0.7, 4.0]),
-        (Body::DistalFemur, 0, [0.5, 1.0], MriFaults::none(), [0.08, 0.02, 0.1, 0.7]),
+        (Body::DistalFemur, 0, [0.625, 3.0], MriFaults::usual(8), [0.3, 0.1, 0.7, 2.0]),
+        (Body::ProximalTibia, 2, [0.8, 2.0], MriFaults::none(), [0.2, 0.06, 0.45, 1.2]),
     ] {
         let scan = scan(body, across, size, TissueLevels::default(), &faults, SlicesParams::default());
         let name = format!("{} across {across}, {size:?} mm, noise {}", body.name(), faults.noise_sigma);
