@@ -1,7 +1,9 @@
 //! The sections of `docs/validation.md`, in its order: what `cargo xtask validate` measures.
 
+mod agreement;
 mod coverage;
 mod distortion;
+mod edges;
 mod end_to_end;
 mod environment;
 mod ideal;
@@ -38,11 +40,13 @@ pub const ALL: &[(&str, Measure)] = &[
     ("views", views::measure),
     ("distortion", distortion::measure),
     ("environment", environment::measure),
+    ("edges", edges::measure),
     ("end-to-end", end_to_end::measure),
     ("budget", end_to_end::budget),
     ("sweeps", sweeps::measure),
     ("coverage", coverage::measure),
     ("simulated", studies::simulated),
     ("far", studies::far),
+    ("agreement", agreement::measure),
     ("real", studies::real),
 ];
