@@ -174,7 +174,7 @@ fn told(written: &[String], there: usize, not_run: usize, wish: &Wish<'_>) -> St
     }
     let how = match (wish.again, wish.csv) {
         (true, _) => {
-            "Files named `.new` are not used: take what you need from them, or rename them in place of the old ones.\n"
+            "Files named `.new` are not used: take what you need from them. Renamed in place of the old ones\nand left unchanged, they give the outlines back to the program.\n"
         }
         (false, false) => {
             "Open them in Inkscape: drag nodes, delete a path, draw one in the layer of its body; the two circles of a path bound what is \

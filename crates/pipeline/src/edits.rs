@@ -102,9 +102,10 @@ fn is_edit(path: &Path) -> bool {
 /// The job and the slot of a file's picture, by its name `<frame>_<view>`.
 fn picture_of(file: &Path, study: &Study, trial: usize, jobs: &[Job]) -> Result<(usize, usize), String> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let ending = file.extension().unwrap_or_default().to_string_lossy();
     if let Some(name) = stem.strip_suffix(".new") {
         return Err(format!(
-            "it was written beside the edit that is used; rename it to {name} and its ending to use it"
+            "it was written beside the edit that is used; take what you need from it, or rename it {name}.{ending}"
         ));
     }
     let Trial { name, frames, .. } = &study.trials[trial];

@@ -156,7 +156,7 @@ fn nothing_that_is_there_is_overwritten() {
     let (code, listed, _) = scene.biplane(&["edits"]);
     assert!(
         code == 1
-            && listed.contains("edits/squat/0001_A.new.svg is not used: it was written beside the edit"),
+            && listed.contains("edits/squat/0001_A.new.svg is not used: it was written beside the edit that is used; take what you need from it"),
         "{listed}"
     );
     let (code, _, err) = scene.biplane(&["edit", "squat", "1", "A", "--again"]);
@@ -276,4 +276,39 @@ fn a_picture_that_drawing_programs_show_too_dark_is_copied() {
     let shown = image::open(scene.path("edits/squat/0000_A.png")).unwrap().to_luma8();
     let (low, high) = shown.pixels().fold((255, 0), |(low, high), p| (p[0].min(low), p[0].max(high)));
     assert_eq!((low, high), (0, 255));
+}
+
+#[test]
+fn outlines_to_look_at_are_listed_and_written_down() {
+    let scene = Scene::new();
+    // No outline is found to its last pixel.
+    scene.edit("[match]", "[contour]\nflag_found_share = 1.0\n\n[match]");
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.contains("Look at these outlines (") && out.contains("`biplane edit --flagged`"), "{out}");
+    let listed = out.lines().filter(|l| l.starts_with("  squat 000")).count();
+    assert!(
+        listed > 0
+            && scene.read("results/report.html").contains(&format!("<b>{listed}</b>outlines to look at")),
+        "{out}"
+    );
+    let (code, said, err) = scene.biplane(&["edit", "--flagged"]);
+    assert!(code == 0 && said.matches("wrote edits/squat/").count() == listed, "{said}{err}\n{out}");
+    let (_, said, _) = scene.biplane(&["edit"]);
+    assert!(
+        said.starts_with(&format!("{listed} picture(s) have an edit already; it was left alone")),
+        "{said}"
+    );
+    // What was put right asks no more.
+    let first = out.lines().find(|l| l.starts_with("  squat 000")).unwrap();
+    let (frame, view) = (&first[8..12], &first[13..14]);
+    let path = format!("edits/squat/{frame}_{view}.svg");
+    let text = scene.read(&path).replacen(
+        "inkscape:label=\"box\"",
+        "inkscape:label=\"box\" transform=\"translate(0.05 0)\"",
+        1,
+    );
+    scene.write(&path, text.as_bytes());
+    let (_, out, _) = scene.biplane(&["run"]);
+    assert!(!out.contains(first) && out.contains("1 file(s) used"), "{out}");
 }
