@@ -355,7 +355,9 @@ impl Job<'_> {
                 continue;
             }
             let scaled: Vec<Plane> = ring.iter().map(|p| [p[0] * dx, p[1] * dy]).collect();
-            let edges = self.edges(k, off, &smooth_outline(&scaled, dx.min(dy)));
+            // What crosses itself once smoothed is taken as it was.
+            let outline = Some(smooth_outline(&scaled, dx.min(dy))).filter(|o| ring::is_simple(o));
+            let edges = self.edges(k, off, &outline.unwrap_or(scaled));
             unclear += edges.unclear;
             all += edges.points.len();
             let point = |(p, sigma): &(Plane, f64)| {
@@ -371,13 +373,12 @@ impl Job<'_> {
     fn edges(&self, k: usize, off: &[f32], outline: &[Plane]) -> Edges {
         let [dx, dy] = self.stack.pixel_mm;
         let (size, slices) = (self.stack.slice_voxels(), self.stack.size[2]);
-        let of = |values: &'_ [f32], k: usize| values[k * size..(k + 1) * size].to_vec();
+        let span = k * size..(k + 1) * size;
         let columns = self.stack.size[0];
         let (before, after) = (k.saturating_sub(1), (k + 1).min(slices - 1));
         let [low, high] = [before, after].map(|k| Slice { values: &off[k * size..(k + 1) * size], columns });
-        let (samples, levels) = (of(self.samples, k), of(self.levels, k));
-        let samples = Slice { values: &samples, columns };
-        let levels = Slice { values: &levels, columns };
+        let samples = Slice { values: &self.samples[span.clone()], columns };
+        let levels = Slice { values: &self.levels[span], columns };
         let heights = &self.stack.heights_mm;
         let apart = (heights[after] - heights[before]).max(f64::MIN_POSITIVE);
         let thickness = self.stack.thickness_mm(k);
@@ -430,10 +431,18 @@ impl Job<'_> {
         }
         let spacing = ring::length(outline) / outline.len() as f64;
         let smooth = evenly::smoothed(&shifts, &sigmas, (EDGE_REACH_MM / spacing).max(LEAST_REACH));
-        let moved = |n: usize| -> Plane {
-            std::array::from_fn(|a| outline[n][a] + directions[n][a] * smooth.values[n])
+        let moved = |part: f64| -> Vec<Plane> {
+            let shift = |n: usize, a: usize| directions[n][a] * smooth.values[n] * part;
+            (0..outline.len()).map(|n| std::array::from_fn(|a| outline[n][a] + shift(n, a))).collect()
         };
-        let points = (0..outline.len()).map(|n| (moved(n), smooth.sigmas[n])).collect();
+        // In a narrow bay, points that move outward from either side may pass each other.
+        let ring = [1.0, 0.5].map(moved).into_iter().find(|r| ring::is_simple(r));
+        let ring = ring.unwrap_or_else(|| outline.to_vec());
+        let off_by = |n: usize, p: &Plane| {
+            let wanted: Plane = std::array::from_fn(|a| outline[n][a] + directions[n][a] * smooth.values[n]);
+            smooth.sigmas[n].hypot((wanted[0] - p[0]).hypot(wanted[1] - p[1]))
+        };
+        let points = ring.into_iter().enumerate().map(|(n, p)| (p, off_by(n, &p))).collect();
         Edges { points, unclear }
     }
 }

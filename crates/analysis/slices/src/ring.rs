@@ -47,6 +47,25 @@ pub(crate) fn winding(ring: &[Plane], at: Plane) -> i32 {
     turns
 }
 
+/// Whether no two sides cross. Sides are compared with those that lie level with them alone.
+pub(crate) fn is_simple(ring: &[Plane]) -> bool {
+    let count = ring.len();
+    let side = |n: usize| (ring[n], ring[(n + 1) % count]);
+    let low = |n: usize| side(n).0[1].min(side(n).1[1]);
+    let high = |n: usize| side(n).0[1].max(side(n).1[1]);
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| low(a).total_cmp(&low(b)));
+    let turn = |a: Plane, b: Plane, c: Plane| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let cross = |n: usize, m: usize| {
+        let ((a, b), (c, d)) = (side(n), side(m));
+        turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+    };
+    order
+        .iter()
+        .enumerate()
+        .all(|(at, &n)| order[at + 1..].iter().take_while(|&&m| low(m) <= high(n)).all(|&m| !cross(n, m)))
+}
+
 /// Points evenly spread along the ring, about `spacing` apart, the first one kept; at least eight.
 pub(crate) fn resampled(ring: &[Plane], spacing: f64) -> Vec<Plane> {
     let whole = length(ring);
@@ -75,6 +94,7 @@ mod tests {
         assert_eq!((signed_area(&square), length(&square)), (4.0, 8.0));
         assert!(moment(&square).iter().all(|m| (m - 8.0).abs() < 1e-12));
         assert_eq!((winding(&square, [2.0, 2.0]), winding(&square, [0.0, 2.0])), (1, 0));
+        assert!(is_simple(&square) && !is_simple(&[square[0], square[2], square[1], square[3]]));
         let points = resampled(&square, 0.5);
         assert_eq!(points.len(), 16);
         assert!((length(&points) - 8.0).abs() < 1e-9 && points[1] == [1.5, 1.0]);
