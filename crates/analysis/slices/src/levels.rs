@@ -78,6 +78,8 @@ const BEYOND_MM: f64 = 4.0;
 const RISE: f64 = 0.12;
 /// Least number of rays that say something.
 const LEAST_RAYS: usize = 30;
+/// A shell has to be darker than marrow and than what is outside by this share of the marrow's level.
+pub(crate) const LEAST_CONTRAST: f64 = 0.1;
 /// Side of a cell, and the reach of a ray's word, mm.
 const CELL_MM: f64 = 3.0;
 /// The darkest places differ by how much of a voxel the shell fills: so many of them are as dark as the shell.

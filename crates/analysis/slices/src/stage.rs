@@ -59,10 +59,12 @@ pub struct SlicesParams {
     /// For `bone`: the cortical shell is nowhere thicker than this, mm, measured in the slice. 0.5 to 30.
     #[schemars(range(min = 0.5, max = 30.0))]
     pub shell_mm: f64,
-    /// For `bone`: by how much neighbouring marrow may differ in level, as a share of it. 0.02 to 0.6.
+    /// For `bone`: by how much neighbouring marrow may differ in level, as a share of it; smaller where contours run out into
+    /// fat that is nearly as bright. 0.02 to 0.6.
     #[schemars(range(min = 0.02, max = 0.6))]
     pub tolerance: f64,
-    /// For `bone`: a hole of the shell narrower than twice this is no way out, mm. 0 to 20.
+    /// For `bone`: a hole of the shell narrower than twice this is no way out, mm. Marrow thinner than twice this is lost, unless
+    /// it hangs on thicker marrow beside it. 0 to 20.
     #[schemars(range(min = 0.0, max = 20.0))]
     pub leak_mm: f64,
 }

@@ -79,7 +79,7 @@ fn labels_are_followed_to_a_fraction_of_a_voxel() {
     let ball = Ball { centre: Point3::new(1.13, -2.31, 0.57), radius: 20.0 };
     let femur = Body::DistalFemur.solid();
     let tibia = Body::ProximalTibia.solid();
-    // Limits: rms and worst, in pixels of the slice; measured 0.07 to 0.14 and 0.24 to 0.57.
+    // Limits: rms and worst, in pixels of the slice; measured 0.07 to 0.13 and 0.24 to 0.57.
     for (name, solid, pixel, slice) in [
         ("ball", &ball as &dyn Solid, 0.5, 0.5),
         ("ball", &ball, 0.365, 0.7),
@@ -207,7 +207,7 @@ fn a_bright_shell_is_found_as_a_dark_one_is() {
         TissueLevels { marrow: 1000.0, cortical: 2300.0, soft_tissue: 1060.0, ..TissueLevels::default() };
     let faults = MriFaults { noise_sigma: 30.0, seed: 3, ..MriFaults::none() };
     let bright = SlicesParams { contrast: Contrast::Bright, ..SlicesParams::default() };
-    let scan = scan(Body::ProximalTibia, 2, [0.5, 1.0], levels, &faults, bright);
+    let scan = scan(Body::ProximalTibia, 2, [0.6, 1.5], levels, &faults, bright);
     let f = figures("tibia in CT", &scan.off);
     assert!(f.rms < 0.1 && f.worst < 1.0, "{f:?}");
 }
