@@ -11,6 +11,8 @@ use biplane_phantom::{
 use biplane_slices::{Contrast, Method, SlicesError, SlicesParams, slice_contours};
 use biplane_stage::Context;
 use nalgebra::UnitQuaternion;
+use rand::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 fn volume(grid: &SliceGrid, samples: Vec<f32>) -> Volume {
     let step = |a: usize| (grid.axes[a] * grid.spacing_mm[a]).into();
@@ -260,4 +262,57 @@ fn what_is_no_bone_is_said() {
     damaged.origins_mm.swap(3, 4);
     let found = slice_contours(&damaged, &params, &Context::new());
     assert_eq!(found, Err(SlicesError::Order { slice: 4 }));
+}
+
+/// Small volumes of few levels, some of one voxel or slice, some of extreme numbers: contours or an error, and no panic.
+#[test]
+fn no_volume_makes_it_panic() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(11);
+    let mut found = 0;
+    for round in 0..600 {
+        let [columns, rows, slices] = [0; 3].map(|_| rng.random_range(1..14_usize));
+        let scale = [1.0, 1000.0, 1e30, -5.0][round % 4];
+        let level = [0.05, 0.5, 0.95][round % 3];
+        let middle = [columns, rows, slices].map(|n| (n as f64 - 1.0) / 2.0);
+        let mut samples = Vec::new();
+        for k in 0..slices {
+            for j in 0..rows {
+                for i in 0..columns {
+                    let place = [i, j, k].map(|c| c as f64);
+                    let off = (0..3).map(|a| (place[a] - middle[a]).powi(2)).sum::<f64>().sqrt();
+                    let ball = if off < 3.0 {
+                        3.0
+                    } else if off < 5.0 {
+                        0.0
+                    } else {
+                        2.0
+                    };
+                    let noise: bool = rng.random_bool(level);
+                    samples.push(scale * if noise && round % 2 == 0 { 1.0 } else { ball });
+                }
+            }
+        }
+        let volume = Volume {
+            columns,
+            rows,
+            column_step_mm: [2.0, 0.0, 0.0],
+            row_step_mm: [0.0, rng.random_range(0.5..3.0), 0.0],
+            origins_mm: (0..slices).map(|k| [0.0, 0.0, 2.5 * k as f64]).collect(),
+            samples,
+        };
+        let seed_mm = volume.place_mm(middle[0], middle[1], slices / 2);
+        for (method, contrast) in [
+            (Method::Labels, Contrast::Dark),
+            (Method::Bone, Contrast::Dark),
+            (Method::Bone, Contrast::Bright),
+        ] {
+            let params = SlicesParams { method, contrast, label: 1, seed_mm, ..SlicesParams::default() };
+            if let Ok(contours) = slice_contours(&volume, &params, &Context::new()) {
+                found += 1;
+                assert!(SliceContours::decode(&contours.encode()).is_ok());
+            }
+        }
+    }
+    println!("{found} of 1800 with contours");
+    assert!(found > 50, "{found}");
 }
