@@ -4,8 +4,8 @@
 //! difference does along (variance 1/3 px^2), so edges of all directions are seen alike; Sobel's is 1/4, Prewitt's 1/3. Roberts's
 //! cross, turned by 45 degrees, is the difference of neighbours averaged over two rows, half a pixel to the right and below.
 //!
-//! **A pixel owns a crest** if its gradient is the largest of three along the axis that the edge crosses more steeply: then an
-//! edge has one point a row or column, without gaps.
+//! **A pixel owns a crest** if its gradient is larger than between the two neighbours that it points between, and as large as between
+//! those behind (Canny's own interpolation).
 //!
 //! **Its place.** The gradient of a step that was blurred by Gaussians is a Gaussian across the edge, so its logarithm is a
 //! parabola: a quadratic through the logarithm in the 3 x 3 pixels around gives the crest's offset and the edge's width, for
@@ -60,7 +60,7 @@ impl Field<'_> {
     pub fn crests(&self, low: f64, high: f64) -> Vec<u8> {
         let mut marks = vec![0_u8; self.smooth.width * self.smooth.height];
         // An even picture has no crests, whatever the threshold.
-        let limits = [low, high].map(|t| ((t * t) as f32).max(1e-9));
+        let limits = [low, high].map(|t| (t as f32).max(1e-4));
         Processor::new().dispatch(
             #[inline(always)]
             || crests(*self, limits, &mut marks),
@@ -88,7 +88,7 @@ impl Field<'_> {
         [(column(k + 1) - column(k - 1)) / 2.0, (row(k + w) - row(k - w)) / 2.0]
     }
 
-    /// The crests that pixels own, and for each the square of the blur that [`crate::curved`] takes out, px^2.
+    /// The crests that pixels own, and for each the square of the edge's width, px^2.
     pub fn points(&self, pixels: &[u32], noise: &Noise, smoothing_px: f64) -> (Vec<EdgePoint>, Vec<f64>) {
         // Deviation of the second derivative across the edge of white noise of deviation 1, smoothed by Gaussians of variance
         // `along` the gradient, where the second difference adds 1/6, and `across`, where the fit's weights add theirs.
@@ -173,12 +173,12 @@ impl Field<'_> {
         let sigma = noise.at(level) * curvature_noise * width_squared / strength;
         let half = if self.operator == Operator::Roberts { 0.5 } else { 0.0 };
         let pixel = [(k % w) as f64 + half, (k / w) as f64 + half];
-        (point_at(pixel, offset, n, strength, sigma), width_squared + FIT_VARIANCE)
+        (point_at(pixel, offset, n, strength, sigma), width_squared)
     }
 }
 
 /// Variance of the fit's weights across, px^2: it adds to the smoothing of the noise, and to the shrinkage of curved edges.
-const FIT_VARIANCE: f64 = 1.0 / 3.0;
+pub(crate) const FIT_VARIANCE: f64 = 1.0 / 3.0;
 
 /// Natural logarithm of a positive normal number, to 2e-6: the same on every processor, and faster than the exact one.
 #[inline(always)]
@@ -201,7 +201,7 @@ struct Rows {
     columns: [Vec<f32>; 2],
 }
 
-/// Marks pixels that own a crest of at least the low limit, and of the high one; limits are squares of sizes.
+/// Marks pixels that own a crest of at least the low limit, and of the high one.
 #[inline(always)]
 fn crests(field: Field<'_>, limits: [f32; 2], marks: &mut [u8]) {
     let (w, h) = (field.smooth.width, field.smooth.height);
@@ -228,7 +228,7 @@ fn crests(field: Field<'_>, limits: [f32; 2], marks: &mut [u8]) {
     }
 }
 
-/// Gradient along x and y and its squared size, of one row, but for its first and last pixel.
+/// Gradient along x and y and its size, of one row, but for its first and last pixel.
 #[inline(always)]
 fn difference(
     operator: Operator,
@@ -255,7 +255,7 @@ fn difference(
         let gy = 0.5 * (a * (before[x] + after[x]) + b * middle[x]);
         along_x[x] = gx;
         along_y[x] = gy;
-        sizes[x] = gx * gx + gy * gy;
+        sizes[x] = (gx * gx + gy * gy).sqrt();
     }
 }
 
@@ -267,7 +267,7 @@ fn roberts(here: &[f32], below: &[f32], ([along_x, along_y], sizes): (&mut [Vec<
         let (gx, gy) = ((falling + rising) / 2.0, (falling - rising) / 2.0);
         along_x[x] = gx;
         along_y[x] = gy;
-        sizes[x] = gx * gx + gy * gy;
+        sizes[x] = (gx * gx + gy * gy).sqrt();
     }
 }
 
@@ -275,17 +275,33 @@ fn roberts(here: &[f32], below: &[f32], ([along_x, along_y], sizes): (&mut [Vec<
 #[inline(always)]
 fn mark(rows: &Rows, [low, high]: [f32; 2], marks: &mut [u8]) {
     let n = marks.len() - 2 * BORDER;
-    let [above, here, below] = &rows.sizes;
-    let (left, right) = (&here[BORDER - 1..BORDER - 1 + n], &here[BORDER + 1..BORDER + 1 + n]);
-    let [above, here, below] = [above, here, below].map(|r| &r[BORDER..BORDER + n]);
-    let [along_x, along_y] = [0, 1].map(|a| &rows.along[0][a][BORDER..BORDER + n]);
+    let row = |r: usize, x: usize| &rows.sizes[r][x..x + n];
+    let (al, am, ar) = (row(0, BORDER - 1), row(0, BORDER), row(0, BORDER + 1));
+    let (hl, hm, hr) = (row(1, BORDER - 1), row(1, BORDER), row(1, BORDER + 1));
+    let (bl, bm, br) = (row(2, BORDER - 1), row(2, BORDER), row(2, BORDER + 1));
+    let (along_x, along_y) = (&rows.along[0][0][BORDER..BORDER + n], &rows.along[0][1][BORDER..BORDER + n]);
     let marks = &mut marks[BORDER..BORDER + n];
     for x in 0..n {
-        let m = here[x];
-        let upright = (m >= above[x]) & (m > below[x]);
-        let level = (m >= left[x]) & (m > right[x]);
-        let steep = along_y[x].abs() > along_x[x].abs();
-        let owns = (m >= low) & ((steep & upright) | (!steep & level));
+        // All are read before any is chosen, so that the choice needs no branch.
+        let (al, am, ar) = (al[x], am[x], ar[x]);
+        let (hl, m, hr) = (hl[x], hm[x], hr[x]);
+        let (bl, bm, br) = (bl[x], bm[x], br[x]);
+        let (gx, gy) = (along_x[x], along_y[x]);
+        let steep = gy.abs() > gx.abs();
+        let same = gx * gy > 0.0;
+        let most = gx.abs().max(gy.abs());
+        let least = gx.abs().min(gy.abs());
+        // The neighbours between which the gradient points, and those behind.
+        let ahead = if steep { bm } else { hr };
+        let behind = if steep { am } else { hl };
+        let ahead_turned = if steep { bl } else { ar };
+        let behind_turned = if steep { ar } else { bl };
+        let ahead_aside = if same { br } else { ahead_turned };
+        let behind_aside = if same { al } else { behind_turned };
+        // Both sides of the comparison are multiplied by `most`, which saves a division.
+        let before = (most - least) * behind + least * behind_aside;
+        let after = (most - least) * ahead + least * ahead_aside;
+        let owns = (m >= low) & (m * most >= before) & (m * most > after);
         marks[x] = (u8::from(owns) * CANDIDATE) | (u8::from(owns & (m >= high)) * STRONG);
     }
 }

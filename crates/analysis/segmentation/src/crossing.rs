@@ -74,7 +74,7 @@ pub(crate) fn find(
     // A level is crossed inside a round outline as a crest is, the Laplacian's zero as far outside.
     let blur_squared = if params.method == Method::Log { -blur * blur } else { blur * blur };
     let blurs = vec![blur_squared; pixels.len()];
-    EdgeMap { width: w, height: h, points, pixels, blurs }
+    EdgeMap { width: w, height: h, points, pixels, blurs, fit: 0.0 }
 }
 
 /// Central differences.

@@ -14,8 +14,8 @@ use biplane_geometry::{Curve, EdgePoint};
 const STRETCH: f64 = 5.0;
 
 /// Corrects all points of a curve. `blurs` are squares of the edge's width at each point, px^2; below 0 for a method that finds
-/// round outlines too large by as much.
-pub(crate) fn correct(curve: &mut Curve, blurs: &[f64]) {
+/// round outlines too large by as much. `fit` times the curvature is what the fit adds, px^2.
+pub(crate) fn correct(curve: &mut Curve, blurs: &[f64], fit: f64) {
     let n = curve.points.len();
     if n < 5 || blurs.len() != n {
         return;
@@ -29,21 +29,30 @@ pub(crate) fn correct(curve: &mut Curve, blurs: &[f64]) {
         let curvature = course.curvature(i, half, &mut window);
         // The course is the direction turned by a quarter from x to y, so where it turns that way its centre is on the dark side.
         let outward = p.direction * curvature.signum();
-        p.position += outward * shrunk_by(curvature.abs(), blur_squared.abs()) * blur_squared.signum();
+        let shift = shrunk_by(curvature.abs(), blur_squared.abs(), fit);
+        p.position += outward * shift * blur_squared.signum();
     }
 }
 
-/// How far outside the crest the step lies, px, where the crest has this curvature, 1 / px.
-fn shrunk_by(curvature: f64, blur_squared: f64) -> f64 {
-    let found = 1.0 / curvature.max(1e-9);
+/// How far outside the found point the step lies, px, where the curve has this curvature, 1 / px.
+fn shrunk_by(curvature: f64, blur_squared: f64, fit: f64) -> f64 {
+    // The fit's own error comes on top of the crest's.
+    let found = 1.0 / curvature.max(1e-9) + fit * curvature;
     let mut radius = found;
     for _ in 0..8 {
-        let x = found * radius / blur_squared;
-        // I1'(x) / I1(x) for large x; where that is of no use the bound below holds.
-        let ratio = 1.0 - 1.0 / (2.0 * x) + 3.0 / (8.0 * x * x) + 3.0 / (8.0 * x * x * x);
-        radius = found / ratio.clamp(0.5, 1.0);
+        radius = found / slope_of_bessel(found * radius / blur_squared).clamp(0.5, 1.0);
     }
-    (radius - found).min(0.5 * blur_squared.sqrt())
+    (radius - found).min(0.5 * blur_squared.sqrt()) + fit * curvature
+}
+
+/// `I1'(x) / I1(x)`, which is `I0 / I1 - 1 / x`, of the modified Bessel functions.
+fn slope_of_bessel(x: f64) -> f64 {
+    if x > 30.0 {
+        return 1.0 - 1.0 / (2.0 * x) + 3.0 / (8.0 * x * x) + 3.0 / (8.0 * x * x * x);
+    }
+    // I1 / I0 as a continued fraction (Gauss), from behind.
+    let ratio = (1..50).rev().fold(0.0, |rest, k| 1.0 / (2.0 * f64::from(k) / x + rest));
+    1.0 / ratio - 1.0 / x
 }
 
 /// The angle with this sine and cosine, of 60 degrees at most, to 1e-6 rad: by the tangent of its half.
@@ -141,11 +150,12 @@ mod tests {
 
     #[test]
     fn the_crest_of_a_blurred_disc_is_moved_to_its_edge() {
-        for (radius, blur, most) in [(40.0, 1.3, 1e-4), (10.0, 2.0, 1e-3), (6.5, 1.3, 1e-3), (5.0, 1.6, 0.01)]
+        for (radius, blur, most) in
+            [(40.0, 1.3, 1e-4), (10.0, 2.0, 1e-3), (6.5, 1.3, 1e-3), (5.0, 1.6, 1e-3), (2.0, 0.6, 1e-3)]
         {
             let crest = crest_of_disc(radius, blur);
             assert!(radius - crest > 0.4 * blur * blur / radius / 2.0, "there is something to correct");
-            let corrected = crest + shrunk_by(1.0 / crest, blur * blur);
+            let corrected = crest + shrunk_by(1.0 / crest, blur * blur, 0.0);
             assert!((corrected - radius).abs() < most, "{radius} {blur}: {corrected}");
         }
     }
@@ -171,10 +181,10 @@ mod tests {
                 points.reverse();
             }
             let mut disc = Curve { points, closed: true };
-            correct(&mut disc, &[2.0; 60]);
+            correct(&mut disc, &[2.0; 60], 0.0);
             for p in &disc.points {
                 let found = (p.position - Point2::new(50.0, 50.0)).norm();
-                assert!((found - (radius + shrunk_by(0.1, 2.0))).abs() < 1e-3, "{found}");
+                assert!((found - (radius + shrunk_by(0.1, 2.0, 0.0))).abs() < 1e-3, "{found}");
             }
         }
         let straight = |i: i32| EdgePoint {
@@ -184,7 +194,7 @@ mod tests {
             sigma_px: 0.1,
         };
         let mut line = Curve { points: (0..20).map(straight).collect(), closed: false };
-        correct(&mut line, &[2.0; 20]);
+        correct(&mut line, &[2.0; 20], 0.0);
         assert!(line.points.iter().all(|p| (p.position.y - 3.0).abs() < 1e-9));
     }
 }

@@ -86,7 +86,7 @@ pub fn link(map: &EdgeMap, params: &SegmentParams) -> Vec<Curve> {
         }
         let mut curve = Curve { points, closed };
         if params.correct_curved {
-            correct(&mut curve, &blurs);
+            correct(&mut curve, &blurs, map.fit);
         }
         curves.push(curve);
     }
