@@ -11,6 +11,7 @@
 mod bead_frame;
 mod blur;
 mod bodies;
+mod disc;
 mod distortion;
 mod exposure;
 mod fluoroscope;
@@ -30,6 +31,7 @@ mod transmission;
 
 pub use bead_frame::{BeadFrame, BeadFrameError, BeadLayout, SeenBead, Tube};
 pub use bodies::{Body, DistalFemur, FemoralComponent, Patella, ProximalTibia, TibialTray};
+pub use disc::BlurredDisc;
 pub use distortion::IntensifierDistortion;
 pub use exposure::{Exposure, picture};
 pub use fluoroscope::{TrueFluoroscope, biplane};

@@ -22,6 +22,7 @@ mod starts;
 pub mod summary;
 mod table;
 pub mod thesis;
+mod true_outline;
 
 pub use document::{Plot, Section, readme, write};
 pub use lab::{Effort, Lab};

@@ -33,6 +33,20 @@ impl Knee {
             Self::Natural => [Body::DistalFemur, Body::ProximalTibia],
         }
     }
+
+    /// All bodies whose shadows are in the pictures, those that are sought first: each with its size and its pose.
+    pub fn shadows(self, posture: &Posture) -> Vec<(Body, f64, Pose)> {
+        let mut all: Vec<_> = self.bodies().map(|body| (body, 1.0, posture.pose(body))).into();
+        match self {
+            Self::Implants => all.extend(
+                Self::Natural
+                    .bodies()
+                    .map(|bone| (bone, BELOW_IMPLANT, posture.pose_below_implant(bone, BELOW_IMPLANT))),
+            ),
+            Self::Natural => all.push((Body::Patella, 1.0, posture.pose(Body::Patella))),
+        }
+        all
+    }
 }
 
 /// Points of the surfaces that only stand in the beam.

@@ -26,7 +26,7 @@ const POINTS: usize = 15_000;
 const FINE_POINTS: usize = 120_000;
 
 /// Fluoroscopes as laboratories set them up, displaced and bent, a number of them drawn.
-fn equipment(lab: &Lab, number: usize) -> Equipment {
+pub(super) fn equipment(lab: &Lab, number: usize) -> Equipment {
     let mut chance = random(lab.seed, 50, number);
     let views = displaced(&mut chance);
     let exposure = |distortion| Exposure { distortion: Some(distortion), ..Exposure::fluoroscopy() };
