@@ -6,19 +6,21 @@
 //! it. Without a backdrop the page is the picture, if it has its shape. Fill, clips, masks, guides and text do not count.
 //! Style sheets are not followed.
 
+mod pieces;
+
 use std::collections::HashMap;
 use std::path::Path;
 
-use biplane_artifact::{ContentHash, EditedContour};
+use biplane_artifact::ContentHash;
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::chain::{Chain, distance};
-use super::named::{alike, body_of, known};
+use super::chain::Chain;
+use super::named::{body_of, known};
 use super::place::{Affine, Box2, Pair, length};
 use super::shapes;
-use super::trusted::Line;
 use super::write::NAMESPACE;
 use super::{About, BodyEdit, Edit, EditError, MAX_POINTS, VERSION};
+use pieces::{End, mark_of};
 
 const SVG: &str = "http://www.w3.org/2000/svg";
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
@@ -27,19 +29,8 @@ const XLINK: &str = "http://www.w3.org/1999/xlink";
 const MAX_ELEMENTS: u32 = 200_000;
 /// Groups within groups.
 const MAX_DEPTH: usize = 128;
-/// What a node may be off and still be where it was written: programs keep eight digits, and add up relative steps.
-const SAME_PX: f64 = 0.01;
-/// How far a mark may be from a piece that has another name, px.
-const NEAR_MARK_PX: f64 = 3.0;
 /// What the shapes of page and picture may differ by.
 const SAME_SHAPE: f64 = 0.002;
-
-/// Which end of the trusted part a mark is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    From,
-    To,
-}
 
 /// What is drawn by one element, in the coordinates of the outermost `svg`.
 struct Drawn<'a> {
@@ -513,107 +504,6 @@ impl<'a> Reader<'a> {
         }
         Ok(Edit { about, bodies, notes: self.notes })
     }
-
-    /// The trusted parts of a body's pieces.
-    fn contour(&mut self, drawn: &[&Drawn<'a>], left: &mut usize) -> Result<EditedContour, EditError> {
-        let mut lines: Vec<(String, Node<'a, 'a>, Line)> = Vec::new();
-        for one in drawn.iter().filter(|d| d.mark.is_none()) {
-            let name = name_of(one.node).map_or_else(
-                || format!("{} of line {}", one.node.tag_name().name(), self.line(one.node)),
-                str::to_owned,
-            );
-            for chain in &one.chains {
-                let points = chain.points().map_err(|e| {
-                    self.at(
-                        one.node,
-                        format!("it is not of the size of a picture ({e}); delete it, or draw it anew"),
-                    )
-                })?;
-                *left = left.checked_sub(points.len()).ok_or_else(|| {
-                    self.at(one.node, format!("with it the file has more than {MAX_POINTS} px of curves; delete what is no outline"))
-                })?;
-                lines.push((name.clone(), one.node, Line { points, closed: chain.closed }));
-            }
-        }
-        let mut ends = vec![[None; 2]; lines.len()];
-        for one in drawn {
-            let Some((of, end)) = &one.mark else { continue };
-            let centre = centre(&one.chains);
-            let nearest = |named: bool| {
-                let own = lines.iter().enumerate().filter(|(_, (name, ..))| !named || alike(name, of));
-                let spots =
-                    own.filter_map(|(i, (.., line))| line.closest(centre).map(|(far, spot)| (far, i, spot)));
-                spots.min_by(|a, b| a.0.total_cmp(&b.0))
-            };
-            let Some((_, line, spot)) =
-                nearest(true).or_else(|| nearest(false).filter(|n| n.0 <= NEAR_MARK_PX))
-            else {
-                self.note(one.node, "marks a piece that is not there; it is left out");
-                continue;
-            };
-            let slot = &mut ends[line][usize::from(*end == End::To)];
-            if slot.replace(spot).is_some() {
-                let word = if *end == End::To { "to" } else { "from" };
-                return Err(self.at(
-                    one.node,
-                    format!(
-                        "it is the second mark `{word}` of the piece `{}`; delete one of the two",
-                        lines[line].0
-                    ),
-                ));
-            }
-        }
-        let mut pieces = Vec::new();
-        for ((name, node, line), [from, to]) in lines.into_iter().zip(ends) {
-            let stretches = line.between(from, to).within(self.size);
-            let before = pieces.len();
-            pieces.extend(stretches.into_iter().filter_map(|s| s.piece(&name)));
-            if pieces.len() == before {
-                self.note(node, "is outside the picture or shorter than 2 px; it is left out");
-            }
-        }
-        Ok(EditedContour { pieces })
-    }
-}
-
-impl Drawn<'_> {
-    fn is_as_written(&self) -> bool {
-        let Some(written) = own(self.node, "written").and_then(|d| shapes::path(d).ok()) else {
-            return false;
-        };
-        self.chains.len() == written.len()
-            && self.chains.iter().zip(&written).all(|(a, b)| a.is_like(b, SAME_PX))
-            || self.mark.is_some() && distance(centre(&self.chains), centre(&written)) <= SAME_PX
-    }
-}
-
-/// The piece whose trusted part an element marks, and which end of it: as it was written, or by its name `<piece> from` or
-/// `<piece> to`, where that is a circle or the piece is named after a body (programs forget what was written).
-fn mark_of(node: Node<'_, '_>, bodies: &[&str]) -> Option<(String, End)> {
-    let end = |word: &str| match word {
-        "from" => Some(End::From),
-        "to" => Some(End::To),
-        _ => None,
-    };
-    if let (Some(word), Some(of)) = (own(node, "mark"), own(node, "of")) {
-        return Some((of.to_owned(), end(word)?));
-    }
-    let (of, word) = name_of(node)?.rsplit_once([' ', '_', '-'])?;
-    let round = matches!(node.tag_name().name(), "circle" | "ellipse");
-    (round || body_of(of, bodies).is_some()).then_some((of.to_owned(), end(word)?))
-}
-
-/// The centre of the box around nodes: of a circle, however it is written, its own.
-fn centre(chains: &[Chain]) -> Pair {
-    let nodes = chains.iter().flat_map(|c| std::iter::once(c.start).chain(c.cubics.iter().map(|c| c[2])));
-    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
-    for node in nodes {
-        for axis in 0..2 {
-            low[axis] = low[axis].min(node[axis]);
-            high[axis] = high[axis].max(node[axis]);
-        }
-    }
-    [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0)
 }
 
 /// An element as a message names it.
