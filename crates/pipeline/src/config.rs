@@ -98,6 +98,9 @@ pub struct FluoroscopeSection {
     /// Distortion table (CSV) of pictures that are not corrected, instead of a `plate`.
     #[schemars(with = "Option<String>")]
     pub distortion: Option<Located>,
+    /// Picture of the same size as its frames, black where edges do not count (a marker, a collimator).
+    #[schemars(with = "Option<String>")]
+    pub mask: Option<Located>,
 }
 
 /// One path, or a list of them.

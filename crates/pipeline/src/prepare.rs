@@ -66,6 +66,8 @@ pub struct Prepared {
     pub equipment: Equipment,
     /// One a body of the study.
     pub meshes: Vec<Model>,
+    /// What hides edges in each view.
+    pub masks: Vec<Vec<Hashed<Frame>>>,
     /// In the order of trials and frames.
     pub jobs: Vec<Job>,
     /// Files in `edits/` that are of no picture, and why.
@@ -206,6 +208,14 @@ impl Prepared {
             let calibrations = study.views.iter().filter_map(|v| faults.keep(calibration(v)).flatten());
             Some(Equipment::Known(calibrations.map(Hashed::new).collect()))
         };
+        let masks: Vec<Vec<Hashed<Frame>>> = study
+            .views
+            .iter()
+            .map(|v| {
+                let mask = v.mask.as_deref().and_then(|path| faults.keep(read_frame(path, 0)));
+                mask.into_iter().map(Hashed::new).collect()
+            })
+            .collect();
         let meshes: Vec<Model> = study.bodies.iter().filter_map(|b| faults.keep(model(b, &index))).collect();
         for (body, mesh) in study.bodies.iter().zip(&meshes) {
             let file = study.relative(&body.mesh);
@@ -299,6 +309,7 @@ impl Prepared {
                     index,
                     equipment,
                     meshes,
+                    masks,
                     jobs,
                     stray_edits,
                     warnings,

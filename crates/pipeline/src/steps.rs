@@ -135,17 +135,22 @@ impl Steps<'_> {
     /// The picture cannot be used, the stage failed, or the store did.
     pub fn segment(&self, job: &Job, slot: usize) -> Done<Stored<Curves>> {
         let facts = self.picture(job, slot)?;
-        let promised = SegmentInputs::<Promised> { frame: facts.promise(), mask: Vec::new() };
+        let promised = self.segment_promised(job, slot, &facts);
+        let mask = &self.prepared.masks[self.view(job, slot).0];
         let load = || {
-            self.prepared
-                .read(&job.pictures[slot])
-                .map(|f| SegmentInputs { frame: Hashed::new(f), mask: Vec::new() })
+            let frame = self.prepared.read(&job.pictures[slot]);
+            frame.map(|f| SegmentInputs { frame: Hashed::new(f), mask: mask.clone() })
         };
         let item = self.item(job, self.view(job, slot).1);
         self.store
             .execute::<Segment, _>(SEGMENT, &item, &self.prepared.segment, &promised, load, self.context)
             .map(|done| (done.output, done.how))
             .map_err(|e| self.failed(job, Some(slot), e))
+    }
+
+    fn segment_promised(&self, job: &Job, slot: usize, facts: &FrameFacts) -> SegmentInputs<Promised> {
+        let mask = &self.prepared.masks[self.view(job, slot).0];
+        SegmentInputs { frame: facts.promise(), mask: mask.iter().map(Hashed::promise).collect() }
     }
 
     /// What a person drew in a picture, if anything.
@@ -449,10 +454,8 @@ impl Steps<'_> {
     /// The picture cannot be used, or the store cannot.
     pub fn explain_segment(&self, job: &Job, slot: usize) -> Explained<Curves> {
         let facts = self.picture(job, slot)?;
-        let parts = KeyParts::of::<Segment>(
-            &self.prepared.segment,
-            &SegmentInputs::<Promised> { frame: facts.promise(), mask: Vec::new() },
-        );
+        let parts =
+            KeyParts::of::<Segment>(&self.prepared.segment, &self.segment_promised(job, slot, &facts));
         self.explain::<Segment>(SEGMENT, &self.item(job, self.view(job, slot).1), &parts)
     }
 

@@ -64,6 +64,8 @@ pub struct View {
     pub name: String,
     /// What says where it stands.
     pub source: ViewSource,
+    /// Picture that is black where edges do not count.
+    pub mask: Option<PathBuf>,
 }
 
 /// What says where a fluoroscope stands. All fluoroscopes of a study are of one kind.
@@ -414,7 +416,9 @@ impl Check {
                 calibration,
                 pixel_origin,
                 distortion,
+                mask,
             } = section;
+            let mask = mask.map(|m| self.file(&m, "mask"));
             kinds[usize::from(pictures.is_some())].get_or_insert_with(|| name.clone());
             if let Some(plated) = on_plate.as_ref().filter(|_| !plate) {
                 let problem = Problem::at(plated.span(), "it is not said what this plate is");
@@ -471,7 +475,7 @@ impl Check {
                     None
                 }
             };
-            views.extend(source.map(|source| View { name: name.into_inner(), source }));
+            views.extend(source.map(|source| View { name: name.into_inner(), source, mask }));
         }
         if let [Some(file), Some(pictures)] = &kinds {
             self.list.push(

@@ -125,6 +125,37 @@ fn bad_pictures_stop_only_their_frames() {
 }
 
 #[test]
+fn a_mask_hides_edges_of_its_view_alone() {
+    let scene = Scene::new();
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}");
+    let pipeline = scene.read("pipeline.toml");
+    scene.write(
+        "pipeline.toml",
+        pipeline.replace("[fluoroscope.A]", "[fluoroscope.A]\nmask = \"mask.png\"").as_bytes(),
+    );
+    let put = |mask: &image::GrayImage| {
+        let mut png = std::io::Cursor::new(Vec::new());
+        mask.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        scene.write("mask.png", png.get_ref());
+    };
+    put(&image::GrayImage::from_pixel(SIZE, SIZE, image::Luma([255])));
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}");
+    assert!(
+        out.contains("segment 3 run, 3 cached; match 3 cached") || out.contains("match 0 run, 3 cached"),
+        "{out}"
+    );
+    put(&image::GrayImage::new(SIZE, SIZE));
+    let (code, out, _) = scene.biplane(&["run"]);
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("segment/squat/0001/A: no edge in a frame"), "{out}");
+    put(&image::GrayImage::new(SIZE, SIZE / 2));
+    let (_, out, _) = scene.biplane(&["run"]);
+    assert!(out.contains("the mask has"), "{out}");
+}
+
+#[test]
 fn a_start_far_off_ends_in_a_verdict_and_a_code() {
     let scene = Scene::new();
     scene.write("starts.csv", format!("{HEADER}{}", row(0, 40.0)).as_bytes());
