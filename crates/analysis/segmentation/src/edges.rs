@@ -22,8 +22,8 @@ pub struct EdgeMap {
     pub height: usize,
     /// The points, in the order of their pixels, row by row.
     pub points: Vec<EdgePoint>,
-    /// The pixel of each point, `y * width + x`; ascending.
-    pub(crate) pixels: Vec<u32>,
+    /// The pixel that each point was found at, `y * width + x`; ascending.
+    pub pixels: Vec<u32>,
     /// Square of the edge's width at each point as [`crate::curved`] takes it, px^2.
     pub(crate) blurs: Vec<f64>,
     /// What times its curvature the fit places a point too far inside a curved edge, px^2.

@@ -25,7 +25,7 @@ const FRAMES: [(&str, &[&str]); 3] = [
 /// Where they are, from the project's folder.
 const REAL: &str = "../shared/data/real";
 /// Frames of each row at most.
-const FEW: usize = 6;
+const FEW: usize = 4;
 /// Low threshold over the high one.
 const LOW: f64 = 0.4;
 
@@ -71,7 +71,7 @@ fn frames(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// Our edge pixels where their share of all is nearest to the one wanted.
+/// Our edge pixels, where their share of all is nearest to the one wanted.
 fn ours(frame: &Frame, sigma: f64, share: f64) -> Vec<u8> {
     let wanted = share * (frame.width * frame.height) as f64;
     let edges = |high: f64| {
@@ -85,11 +85,8 @@ fn ours(frame: &Frame, sigma: f64, share: f64) -> Vec<u8> {
         if edges(middle).points.len() as f64 > wanted { low = middle } else { high = middle }
     }
     let mut pixels = vec![0; frame.width * frame.height];
-    for p in edges(high).points {
-        let (x, y) = (p.position.x.round(), p.position.y.round());
-        if x >= 2.0 && y >= 2.0 && x < frame.width as f64 - 2.0 && y < frame.height as f64 - 2.0 {
-            pixels[y as usize * frame.width + x as usize] = 1;
-        }
+    for pixel in edges(high).pixels {
+        pixels[pixel as usize] = 1;
     }
     pixels
 }
