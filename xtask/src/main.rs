@@ -29,7 +29,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Make known truth, run the product's own stages on it, print the thesis's tables with ours beside them, and hold
-    /// every figure to its limit. The full run writes docs/validation.md and the README's table (about 15 minutes).
+    /// every figure to its limit. The full run writes docs/validation.md and the README's table (half an hour on two cores).
     Validate {
         /// The form of a minute or two that CI runs: fewer frames; writes nothing.
         #[arg(long)]
