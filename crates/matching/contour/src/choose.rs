@@ -12,6 +12,10 @@ use crate::{ContourParams, Contrast};
 const MOST_INSET_PX: f64 = 3.0;
 /// How far an edge point may lie ahead of a sample or behind it, px: beyond the end of a curve there is no edge.
 const ABREAST_PX: f64 = 1.5;
+/// An edge that lies farther from the others of its body than this many of their standard deviations is none of the body's, and
+/// how far off it may lie in any case, px: where a soft rim has no edge, one of the body's own inner ones runs beside it.
+const MOST_DEVIATIONS: f64 = 4.0;
+const SURELY_NEAR_PX: f64 = 1.0;
 /// Points that no sample chose between points that one did, and still one stretch: samples and points are both about a pixel apart.
 const MOST_SKIPPED: u32 = 4;
 
@@ -60,16 +64,13 @@ pub fn choose(
         })
         .collect();
     // The inset is that of most edges: the median of the nearest one at each sample.
-    let mut nearest: Vec<f64> = near
-        .iter()
-        .filter_map(|c| c.iter().map(|c| c.outside).min_by(|a, b| a.abs().total_cmp(&b.abs())))
-        .collect();
-    let middle = nearest.len() / 2;
-    let inset = if nearest.is_empty() {
-        0.0
-    } else {
-        nearest.select_nth_unstable_by(middle, f64::total_cmp).1.clamp(-MOST_INSET_PX, MOST_INSET_PX)
-    };
+    let nearest =
+        near.iter().filter_map(|c| c.iter().map(|c| c.outside).min_by(|a, b| a.abs().total_cmp(&b.abs())));
+    let nearest: Vec<f64> = nearest.collect();
+    let inset = median(nearest.clone()).clamp(-MOST_INSET_PX, MOST_INSET_PX);
+    // 1.4826 times the median of absolute values is the standard deviation of normal numbers.
+    let deviation = 1.4826 * median(nearest.iter().map(|outside| (outside - inset).abs()).collect());
+    let reach = params.reach_px.min((MOST_DEVIATIONS * deviation).max(SURELY_NEAR_PX));
 
     let mut contour =
         Contour { pieces: Vec::new(), outline_px: 0.0, found_px: 0.0, unclear_px: 0.0, flags: Vec::new() };
@@ -89,9 +90,9 @@ pub fn choose(
                 }
             }
         }
-        let Some((least, place)) = best.filter(|b| b.0 <= params.reach_px) else { continue };
+        let Some((least, place)) = best.filter(|b| b.0 <= reach) else { continue };
         contour.found_px += sample.length_px;
-        if second <= params.reach_px && second - least < params.apart_px {
+        if second <= reach && second - least < params.apart_px {
             contour.unclear_px += sample.length_px;
         }
         chosen.entry(place.curve).or_default().push(place.point);
@@ -104,6 +105,15 @@ pub fn choose(
     }
     contour.flags = flags(&contour, params);
     contour
+}
+
+/// The middle one of some values; 0 where there are none.
+fn median(mut values: Vec<f64>) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Stretches of one curve, given which of its points were chosen, ascending.
@@ -235,6 +245,19 @@ mod tests {
         let apart = chosen(vec![arc(49.0, 0.0, TAU, true, true), arc(51.5, 0.0, 1.5, true, false)]);
         assert_eq!(apart.unclear_px, 0.0);
         assert_eq!(apart.pieces.len(), 1);
+    }
+
+    #[test]
+    fn an_inner_edge_beside_a_soft_rim_is_not_taken_for_the_rim() {
+        // The rim has no edge over a quarter; 2.2 px inside the others there is another edge of the body.
+        let rim = arc(49.0, 1.6, TAU, true, false);
+        let inner = arc(46.8, 0.0, 1.5, true, false);
+        let pieces = chosen(vec![rim.clone(), inner.clone()]).pieces;
+        assert_eq!(pieces.iter().map(|p| p.curve).collect::<Vec<_>>(), [0]);
+        // Beside a pose that is off, edges scatter, and all within reach are taken.
+        let mut off = vec![rim, inner];
+        off.iter_mut().flat_map(|c| &mut c.points).for_each(|p| p.position.x += 2.0);
+        assert!(chosen(off).pieces.iter().any(|p| p.curve == 1));
     }
 
     #[test]

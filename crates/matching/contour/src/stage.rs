@@ -38,7 +38,8 @@ pub enum Contrast {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ContourParams {
-    /// An edge farther from the outline is not the body's, px, after the inset of its edges as a whole.
+    /// An edge farther from the outline is not the body's, px, after the inset of its edges as a whole; nor is one beyond both
+    /// 1 px and four of their deviations.
     #[schemars(range(min = 0.1, max = 50.0))]
     pub reach_px: f64,
     /// An edge turned from the outline by more is not the body's, degrees.
