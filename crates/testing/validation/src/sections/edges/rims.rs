@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use crate::plot::{Panel, Series, lines};
 use crate::sections::SectionError;
 use crate::true_outline::TrueOutline;
-use crate::{Cell, Column, Plot, Row, SceneError, Table};
+use crate::{Cell, Column, Lab, Plot, Row, SceneError, Table};
 
 /// A body before the middle of a fluoroscope.
 #[derive(Debug, Clone, Copy)]
@@ -249,10 +249,10 @@ impl Found {
     }
 }
 
-fn measured(case: &Case) -> Result<Found, SceneError> {
+fn measured(lab: &Lab, case: &Case) -> Result<Found, SceneError> {
     let shown = Shown::new(case.shape, case.material)?;
     let exposure = Exposure {
-        samples_per_px: 64,
+        samples_per_px: lab.count(64, 16),
         focal_spot_mm: FOCAL_SPOT_MM,
         detector_blur_px: case.detector_px,
         brightness: 0.9,
@@ -296,15 +296,15 @@ pub fn noisy(pictures: usize, smoothing_px: f64, seed: u64) -> Result<Vec<(f64, 
 }
 
 /// The table of insets, and their plot.
-pub fn insets() -> Result<(Table, Plot), SectionError> {
-    let found: Vec<Found> = CASES.par_iter().map(measured).collect::<Result<_, _>>()?;
+pub fn insets(lab: &Lab) -> Result<(Table, Plot), SectionError> {
+    let found: Vec<Found> = CASES.par_iter().map(|case| measured(lab, case)).collect::<Result<_, _>>()?;
     let mut measured: Vec<(f64, f64)> = Vec::new();
     let rows = CASES.iter().zip(&found).map(|(case, found)| {
         let n = found.insets.len().max(1) as f64;
         let mean = found.insets.iter().sum::<f64>() / n;
         let scatter = (found.insets.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n).sqrt();
         let expected = found.expected_px();
-        measured.extend(found.k.map(|k| (k, mean / found.blur_px)));
+        measured.extend(found.k.map(|k| (k.log10(), mean / found.blur_px)));
         Row::ours(
             case.label,
             vec![
@@ -331,9 +331,10 @@ pub fn insets() -> Result<(Table, Plot), SectionError> {
         rows: rows.collect(),
     };
     measured.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let expected = (0..=60).map(|i| f64::from(i) / 4.0).map(|k| (k, steepest(k))).collect();
+    let expected =
+        (-7..=6).map(|i| f64::from(i) / 5.0).map(|power| (power, steepest(10_f64.powf(power)))).collect();
     let panel = Panel {
-        x: "k = mu sqrt(8 r s)".to_owned(),
+        x: "log10 of k = mu sqrt(8 r s)".to_owned(),
         y: "inset, blurs".to_owned(),
         series: vec![
             Series { name: "expected".to_owned(), points: expected },
