@@ -11,21 +11,19 @@ use biplane_artifact::{Calibration, Content, Detector, Environment, Picture, Pla
 use biplane_distortion::{DistortionInputs, FitDistortion};
 use biplane_environment::{EnvironmentInputs, EnvironmentParams, FindEnvironment};
 use biplane_spots::{FindSpots, SpotInputs};
-use biplane_stage::{
-    Artifact, Context, Hashed, How, Inputs, Item, KeyParts, ParamsText, Promised, Stage, Store, Stored,
-};
+use biplane_stage::{Artifact, Context, Hashed, Item, ParamsText, Promised, Store};
 
 use crate::diagnostics::slashes;
 use crate::drawings::{
     BeadDrawingInputs, BeadDrawingParams, DrawBeads, DrawPlate, DrawResiduals, DrawSpace, PlateDrawingInputs,
     PlateDrawingParams, ResidualDrawingInputs, SpaceDrawingInputs, SpaceDrawingParams,
 };
-use crate::look::{Fate, Look};
 use crate::prepare::{CalibrationInputs, Prepared};
 use crate::results::write_if_changed;
 use crate::sources::FrameFacts;
-use crate::steps::{DISTORTION, DRAWING, ENVIRONMENT, ItemError, SPOTS, read_stored};
+use crate::steps::{DISTORTION, DRAWING, ENVIRONMENT, ItemError, SPOTS};
 use crate::study::{Correction, ViewSource};
+use crate::walk::{Walk, Way};
 
 /// What the raw calibration pictures of a study gave.
 #[derive(Debug, Default)]
@@ -52,29 +50,13 @@ pub struct Drawn {
     stored: PathBuf,
 }
 
-/// Whether steps run, or are looked at.
-#[derive(Debug)]
-pub enum Way {
-    /// Name of a step, of an item, and how it was done.
-    Run(Vec<(&'static str, String, How)>),
-    /// What would become of each item.
-    Look(Vec<Look>),
-}
-
 /// Walks over the calibration of a study.
 #[derive(Debug)]
 pub struct Calibrating<'a> {
     prepared: &'a Prepared,
     inputs: &'a CalibrationInputs,
-    store: &'a Store,
-    context: &'a Context,
-    way: Way,
-    /// Items that could not be done, and why.
-    faults: Vec<String>,
+    walk: Walk<'a>,
 }
-
-/// The output of a step and its file; none where it is not there, or cannot be.
-type Stepped<A> = Result<Option<(Hashed<A>, PathBuf)>, ItemError>;
 
 /// What a calibration gave, and how its steps were done; or why there is none.
 pub type Walked = (Result<Option<Calibrated>, CalibrateError>, Way);
@@ -97,14 +79,17 @@ pub fn calibrate(prepared: &Prepared, store: &Store, context: &Context, way: Way
         let calibrations = prepared.equipment.known().to_vec();
         return (Ok(Some(Calibrated { calibrations, ..Calibrated::default() })), way);
     };
-    let mut walk = Calibrating { prepared, inputs, store, context, way, faults: Vec::new() };
-    let result = walk.all();
+    let walk = Walk::new(&prepared.study, store, context, way);
+    let mut calibrating = Calibrating { prepared, inputs, walk };
+    let result = calibrating.all();
+    let walk = calibrating.walk;
     let result = match result {
         Err(ItemError::Cancelled) => Err(CalibrateError::Cancelled),
         Err(ItemError::Failed(message)) => Err(CalibrateError::Failed(vec![message])),
         // Only looking goes on past what cannot be done: it says so item by item.
         Ok(_) if !walk.faults.is_empty() && matches!(walk.way, Way::Run(_)) => {
-            Err(CalibrateError::Failed(std::mem::take(&mut walk.faults)))
+            let faults = walk.faults.iter().map(|f| format!("{}: {}", f.item, f.message));
+            Err(CalibrateError::Failed(faults.collect()))
         }
         Ok(calibrated) => Ok(calibrated),
     };
@@ -132,7 +117,7 @@ impl Calibrating<'_> {
             plates.into_iter().map(|fit| fit.map_or(Some(None), |f| f.map(Some))).collect();
         let spots: Option<Vec<Hashed<Spots>>> = spots.into_iter().collect();
         let (Some(plates), Some(spots)) = (plates, spots) else {
-            self.follows(ENVIRONMENT, &Item::from("fluoroscopes"));
+            self.walk.follows(ENVIRONMENT, &Item::from("fluoroscopes"));
             self.write(&drawings)?;
             return Ok(None);
         };
@@ -202,21 +187,22 @@ impl Calibrating<'_> {
         let item = Item::of(["plate", name]);
         let facts = match self.facts(path) {
             Ok(facts) => facts,
-            Err(error) => return self.fault(SPOTS, &item, &error),
+            Err(error) => return self.walk.fault(SPOTS, &item, &error),
         };
         let frame = || read_frame(path, 0).map(Hashed::new).map_err(|e| e.to_string());
         let (inputs, params) = (self.inputs, &self.inputs.plate_spots);
         let promised = SpotInputs::<Promised> { frame: facts.promise() };
-        let spots =
-            self.step::<FindSpots>(SPOTS, &item, params, &promised, || Ok(SpotInputs { frame: frame()? }))?;
+        let spots = self
+            .walk
+            .step::<FindSpots>(SPOTS, &item, params, &promised, || Ok(SpotInputs { frame: frame()? }))?;
         let own = Item::of([name]);
         let (Some((spots, _)), Some(pattern)) = (spots, &inputs.pattern) else {
-            self.follows(DISTORTION, &own);
+            self.walk.follows(DISTORTION, &own);
             return Ok(None);
         };
         let clicks: Vec<_> = inputs.plate_clicks[view].iter().cloned().collect();
         let given = DistortionInputs { spots, pattern: pattern.clone(), clicks };
-        let fit = self.ready::<FitDistortion>(DISTORTION, &own, &inputs.distortion, given)?;
+        let fit = self.walk.ready::<FitDistortion>(DISTORTION, &own, &inputs.distortion, given)?;
         let Some((fit, _)) = fit else { return Ok(None) };
         let limit = self.prepared.study.distortion.max_held_out_px;
         let params = PlateDrawingParams { view: name.to_owned(), max_held_out_px: limit };
@@ -225,12 +211,12 @@ impl Calibrating<'_> {
         let promised = PlateDrawingInputs::<Promised> { frame: facts.promise(), fit: fit.promise() };
         let load = || Ok(PlateDrawingInputs { frame: frame()?, fit: fit.clone() });
         let item = Item::of(["plate", name]);
-        let drawn = self.step::<DrawPlate>(DRAWING, &item, &params, &promised, load)?;
+        let drawn = self.walk.step::<DrawPlate>(DRAWING, &item, &params, &promised, load)?;
         drawings.extend(drawn.map(|(_, path)| Drawn::of(title, format!("plate_{name}.svg"), path)));
         let title = format!("Distortion of {name}, and what the correction leaves");
         let given = ResidualDrawingInputs { fit: fit.clone() };
         let item = Item::of(["distortion", name]);
-        let drawn = self.ready::<DrawResiduals>(DRAWING, &item, &params, given)?;
+        let drawn = self.walk.ready::<DrawResiduals>(DRAWING, &item, &params, given)?;
         drawings.extend(drawn.map(|(_, path)| Drawn::of(title, format!("distortion_{name}.svg"), path)));
         Ok(Some(fit))
     }
@@ -240,13 +226,13 @@ impl Calibrating<'_> {
         let item = Item::of(["beads", &self.prepared.study.views[view].name, &placing.to_string()]);
         let facts = match self.facts(&path) {
             Ok(facts) => facts,
-            Err(error) => return self.fault(SPOTS, &item, &error),
+            Err(error) => return self.walk.fault(SPOTS, &item, &error),
         };
         let promised = SpotInputs::<Promised> { frame: facts.promise() };
         let load =
             || Ok(SpotInputs { frame: read_frame(&path, 0).map(Hashed::new).map_err(|e| e.to_string())? });
         let params = &self.inputs.bead_spots;
-        Ok(self.step::<FindSpots>(SPOTS, &item, params, &promised, load)?.map(|(spots, _)| spots))
+        Ok(self.walk.step::<FindSpots>(SPOTS, &item, params, &promised, load)?.map(|(spots, _)| spots))
     }
 
     fn detectors(
@@ -290,7 +276,7 @@ impl Calibrating<'_> {
             clicks: inputs.bead_clicks.iter().cloned().collect(),
         };
         let item = Item::from("fluoroscopes");
-        let found = self.ready::<FindEnvironment>(ENVIRONMENT, &item, &inputs.environment, given)?;
+        let found = self.walk.ready::<FindEnvironment>(ENVIRONMENT, &item, &inputs.environment, given)?;
         Ok(found.map(|(environment, _)| environment))
     }
 
@@ -318,7 +304,7 @@ impl Calibrating<'_> {
                 let params = BeadDrawingParams { view, picture: placing, max_reprojection_px };
                 let params = ParamsText::of(&params).map_err(ItemError::of)?;
                 let item = Item::of(["beads", name, &placing.to_string()]);
-                let drawn = self.step::<DrawBeads>(DRAWING, &item, &params, &promised, load)?;
+                let drawn = self.walk.step::<DrawBeads>(DRAWING, &item, &params, &promised, load)?;
                 let (place, title) = match inputs.placings {
                     1 => (format!("beads_{name}.svg"), format!("Beads in {name}, and what the fit leaves")),
                     _ => (
@@ -333,7 +319,7 @@ impl Calibrating<'_> {
         let item = Item::from("fluoroscopes");
         let params = SpaceDrawingParams { max_reprojection_px, max_triangulation_mm };
         let params = ParamsText::of(&params).map_err(ItemError::of)?;
-        let drawn = self.ready::<DrawSpace>(DRAWING, &item, &params, given)?;
+        let drawn = self.walk.ready::<DrawSpace>(DRAWING, &item, &params, given)?;
         let title = "The fluoroscopes and the beads in space".to_owned();
         drawings.extend(drawn.map(|(_, path)| Drawn::of(title, "fluoroscopes.svg".to_owned(), path)));
         Ok(())
@@ -341,7 +327,7 @@ impl Calibrating<'_> {
 
     /// Copies drawings to the folder of results: also those that show why there are no fluoroscopes.
     fn write(&self, drawings: &[Drawn]) -> Result<(), ItemError> {
-        if matches!(self.way, Way::Look(_)) {
+        if matches!(self.walk.way, Way::Look(_)) {
             return Ok(());
         }
         for drawn in drawings {
@@ -350,77 +336,6 @@ impl Calibrating<'_> {
             copied.map_err(|e| ItemError::Failed(format!("cannot write {}: {e}", slashes(&place))))?;
         }
         Ok(())
-    }
-
-    /// A step whose inputs are all at hand.
-    fn ready<S: Stage>(
-        &mut self,
-        step: &'static str,
-        item: &Item,
-        params: &ParamsText,
-        inputs: S::Inputs,
-    ) -> Stepped<S::Output> {
-        let hashes = inputs.hashes();
-        self.step::<S>(step, item, params, &hashes, || Ok(inputs))
-    }
-
-    /// Runs a step and gives its output, or looks whether it is there; `None` where it is not, or cannot be.
-    fn step<S: Stage>(
-        &mut self,
-        step: &'static str,
-        item: &Item,
-        params: &ParamsText,
-        hashes: &<S::Inputs as Inputs>::Hashes,
-        load: impl FnOnce() -> Result<S::Inputs, String>,
-    ) -> Stepped<S::Output> {
-        let stored: Stored<S::Output> = match &mut self.way {
-            Way::Run(done) => {
-                let outcome = self.store.execute::<S, _>(step, item, params, hashes, load, self.context);
-                match outcome {
-                    Ok(outcome) => {
-                        done.push((step, format!("{step}/{item}"), outcome.how));
-                        outcome.output
-                    }
-                    Err(biplane_stage::ExecuteError::Cancelled) => return Err(ItemError::Cancelled),
-                    Err(error) => return self.fault(step, item, &error),
-                }
-            }
-            Way::Look(looks) => {
-                let parts = KeyParts::of::<S>(params, hashes);
-                let why = self.store.explain::<S>(step, item, &parts).map_err(ItemError::of)?;
-                let fate = if why.cached() { Fate::Cached } else { Fate::Runs };
-                looks.push(Look { step, fate, line: why.to_string() });
-                match self.store.get::<S::Output>(parts.key()).ok().flatten() {
-                    Some(stored) => stored,
-                    None => return Ok(None),
-                }
-            }
-        };
-        let value = read_stored(self.store, &stored).map_err(ItemError::Failed)?;
-        Ok(Some((value, stored.path().to_owned())))
-    }
-
-    /// Keeps a fault, and goes on with what does not need the item.
-    fn fault<T>(
-        &mut self,
-        step: &'static str,
-        item: &Item,
-        why: &dyn std::fmt::Display,
-    ) -> Result<Option<T>, ItemError> {
-        let line = format!("{step}/{item}: {}", self.prepared.study.shorten(&why.to_string()));
-        match &mut self.way {
-            Way::Look(looks) => looks.push(Look { step, fate: Fate::Fails, line }),
-            Way::Run(_) => self.faults.push(line),
-        }
-        Ok(None)
-    }
-
-    /// An item that cannot be looked at before what it follows has run.
-    fn follows(&mut self, step: &'static str, item: &Item) {
-        let before = self.store.link_path(step, item).symlink_metadata().is_ok();
-        if let Way::Look(looks) = &mut self.way {
-            looks.push(Look::after(step, item, before));
-        }
     }
 }
 

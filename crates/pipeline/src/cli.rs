@@ -21,8 +21,10 @@ use crate::edit::{EditCommandError, Wish, edit};
 use crate::edit_list::{EditListError, list};
 use crate::logging::{self, LogFormat};
 use crate::look::{Fate, LookError, counts, look};
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, SlicesOutcome};
 use crate::run::{RunError, run};
+use crate::slices::SLICES;
+use crate::slices::command::{SliceWish, edit_slices};
 use crate::study::{Study, StudyError};
 use crate::tables::{PoseTable, TableError};
 use crate::{init, reference, summary};
@@ -138,6 +140,7 @@ to correct an outline, `biplane edit`.")]
   biplane edit lunge 17             in every view of a frame
   biplane edit --flagged            where little of an outline was found, or the match is not good
   biplane edit lunge 17 A --csv     as a table, for CAD or MATLAB
+  biplane edit --slices femur 17    slice 17 of a volume; without a number, those that ask to be looked at
 
 The next run takes what a person changed in place of its own outlines, for that picture and those bodies alone. A file that nobody
 changed is no edit, and no file is overwritten.")]
@@ -151,6 +154,9 @@ changed is no edit, and no file is overwritten.")]
         /// Every picture that asks to be looked at.
         #[arg(long, conflicts_with = "frame")]
         flagged: bool,
+        /// Slices of this bone of [[slices]]; the first argument is then the number of a slice.
+        #[arg(long, value_name = "BONE", conflicts_with = "frame")]
+        slices: Option<String>,
         /// Tables, not drawings.
         #[arg(long)]
         csv: bool,
@@ -310,10 +316,14 @@ fn obey(command: Command) -> Ended {
             }
             Ok(End::Good)
         }
-        Command::Edit { trial, frame, view, flagged: _, csv, again, pipeline } => {
+        Command::Edit { trial, frame, view, flagged: _, slices, csv, again, pipeline } => {
             let [trial, frame, view] = [&trial, &frame, &view].map(Option::as_deref);
-            let wish = Wish { trial, frame, view, csv, again };
-            let text = edit(load(&pipeline)?, &wish).map_err(|error| {
+            let study = load(&pipeline)?;
+            let written = match &slices {
+                Some(bone) => edit_slices(study, &SliceWish { bone, slice: trial, csv, again }),
+                None => edit(study, &Wish { trial, frame, view, csv, again }),
+            };
+            let text = written.map_err(|error| {
                 let end = match &error {
                     EditCommandError::Exists(_) | EditCommandError::NoSuch { .. } => End::BadConfiguration,
                     EditCommandError::Store(_) | EditCommandError::Write { .. } => End::Internal,
@@ -548,6 +558,31 @@ fn to_look_at(study: &Study, outcome: &Outcome) -> String {
     text
 }
 
+/// What was found of bones in slices, a line each.
+fn slices_lines(study: &Study, outcome: &Outcome) -> String {
+    let line = |found: &SlicesOutcome| {
+        let name = &study.slices[found.bone].name;
+        if found.slices == 0 {
+            return format!("Slices of {name}: not found\n");
+        }
+        let mut line = format!(
+            "Slices of {name}: {} contours in {} of {} slices",
+            found.contours, found.with_bone, found.slices
+        );
+        if !found.edited.is_empty() {
+            line += &format!(", {} drawn by hand", found.edited.len());
+        }
+        if !found.flagged.is_empty() {
+            line += &format!(
+                ", {} to look at (`biplane edit --slices {name}` writes drawings to put them right)",
+                found.flagged.len()
+            );
+        }
+        line + "\n"
+    };
+    outcome.slices.iter().map(line).collect()
+}
+
 /// What a run says at its end.
 fn closing(study: &Study, outcome: &Outcome) -> String {
     let mut text = calibration_line(outcome);
@@ -570,6 +605,7 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
             text += &format!("  {}: {}\n", failure.item, failure.message);
         }
     }
+    text += &slices_lines(study, outcome);
     text += &to_look_at(study, outcome);
     let rows = good + doubtful + failed;
     if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
@@ -586,6 +622,9 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     text += &format!("\nPoses    {}\n", at("poses.csv"));
     if !outcome.calibration.drawings.is_empty() {
         text += &format!("Calibration {}\n", at("calibration"));
+    }
+    if outcome.slices.iter().any(|s| s.table.is_some()) {
+        text += &format!("Slices   {}\n", at(SLICES));
     }
     if outcome.frames.iter().any(|f| !f.overlays.is_empty()) {
         text += &format!("Overlays {}\n", at("overlays"));

@@ -9,6 +9,7 @@ use biplane_distortion::DistortionParams;
 use biplane_environment::EnvironmentParams;
 use biplane_optimisation::MatchParams;
 use biplane_segmentation::{SegmentParams, TraceParams};
+use biplane_slices::SlicesParams;
 use biplane_spots::{Look, SpotSettings};
 use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
@@ -46,6 +47,9 @@ pub struct PipelineFile {
     pub body: Vec<BodySection>,
     /// The recordings, one `[[trial]]` each.
     pub trial: Vec<TrialSection>,
+    /// Bones in MRI, CT or maps of labels, one `[[slices]]` each; there may be none.
+    #[serde(default)]
+    pub slices: Vec<SlicesSection>,
     /// How edges are found in the pictures.
     #[serde(default)]
     pub segment: SegmentParams,
@@ -261,6 +265,21 @@ pub struct TrialSection {
     /// The bodies to find in this trial; all of them if not given.
     #[schemars(with = "Option<Vec<String>>")]
     pub bodies: Option<Vec<Located>>,
+}
+
+/// `[[slices]]`: a bone in an MRI, a CT or a map of labels. Its contours in every slice go to `results/slices/NAME.csv`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlicesSection {
+    /// Name of the bone, as results and edits call it.
+    #[schemars(with = "String")]
+    pub name: Located,
+    /// Its volume: a NRRD or NIfTI file, or a folder with the slices of one DICOM series.
+    #[schemars(with = "String")]
+    pub volume: Located,
+    /// How it is found: `find = { method = "bone", seed_mm = [x, y, z] }`, or `find = { label = 3 }`.
+    #[schemars(with = "SlicesParams")]
+    pub find: toml::Spanned<SlicesParams>,
 }
 
 /// How pictures of two fluoroscopes are paired.

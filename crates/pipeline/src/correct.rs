@@ -15,12 +15,13 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use rayon::prelude::*;
 
-use crate::calibrate::{CalibrateError, Way, calibrate};
+use crate::calibrate::{CalibrateError, calibrate};
 use crate::diagnostics::slashes;
 use crate::logging::Progress;
 use crate::prepare::{InputErrors, Prepared};
 use crate::results::write_if_changed;
 use crate::study::Study;
+use crate::walk::Way;
 
 /// How a grey between recorded pixels is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -116,7 +117,7 @@ pub fn correct(
         By::Bicubic => Interpolation::Bicubic,
         By::Bilinear => Interpolation::Bilinear,
     };
-    let progress = Progress::new("Correcting", prepared.jobs.len());
+    let progress = Progress::new("Correcting", prepared.jobs.len(), "frames");
     let written: Vec<usize> = prepared
         .jobs
         .par_iter()

@@ -18,12 +18,13 @@ use biplane_stage::{Context, Hashed, Store, StoreError, Stored};
 use nalgebra::{DMatrix, Matrix2xX};
 use rayon::prelude::*;
 
-use crate::calibrate::{CalibrateError, Calibrated, Way, calibrate};
+use crate::calibrate::{CalibrateError, Calibrated, calibrate};
 use crate::logging::Progress;
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{Standing, Steps, read_stored};
 use crate::study::Study;
 use crate::summary::aligned;
+use crate::walk::Way;
 
 /// Frames of a trial whose border is looked at.
 const BORDERS: usize = 9;
@@ -139,7 +140,7 @@ impl Looking<'_> {
         let study = self.study();
         let name = &study.trials[self.trial].name;
         let jobs: Vec<&Job> = self.jobs().collect();
-        let progress = Progress::new("Looking", jobs.len());
+        let progress = Progress::new("Looking", jobs.len(), "frames");
         let looked: Vec<Option<Vec<Matched>>> = jobs
             .par_iter()
             .map(|job| {

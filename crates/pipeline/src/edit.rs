@@ -17,13 +17,14 @@ use biplane_stage::{Context, Hashed, Stage, Store, StoreError};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::calibrate::{CalibrateError, Way, calibrate};
+use crate::calibrate::{CalibrateError, calibrate};
 use crate::diagnostics::{meant, slashes};
 use crate::overlay::COLOURS;
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{Standing, Steps, read_stored};
 use crate::study::Study;
 use crate::tables::same_frame;
+use crate::walk::Way;
 
 /// Points of an edge that are shown beyond either end of what is trusted.
 const BEYOND: usize = 15;
@@ -143,7 +144,7 @@ fn not_made(steps: &Steps<'_>, job: &Job) -> EditCommandError {
 }
 
 /// A name that is given has to be one of the study's.
-fn known<'a>(
+pub(crate) fn known<'a>(
     what: &'static str,
     wanted: Option<&str>,
     names: impl Iterator<Item = &'a str> + Clone,
@@ -321,6 +322,11 @@ fn backdrop(
         return Ok(format!("../../{}", slashes(inside)));
     }
     let bytes = shown_copy(&frame).map_err(|e| EditCommandError::Item(e.to_string()))?;
+    own_backdrop(folder, stem, bytes)
+}
+
+/// Writes a picture beside the drawing that it belongs to, if it is not there, and gives its name. No other picture is overwritten.
+pub(crate) fn own_backdrop(folder: &Path, stem: &str, bytes: Vec<u8>) -> Result<String, EditCommandError> {
     let own = |name: &str| std::fs::read(folder.join(name)).is_ok_and(|old| old == bytes);
     // One that was changed since, or is of the picture as it was, stays.
     let hash = Picture(bytes.clone()).content_hash().to_hex();
@@ -337,7 +343,7 @@ fn backdrop(
 }
 
 /// A grey PNG of 8 bits whose darkest level is black and whose brightest is white.
-fn shown_copy(frame: &Frame) -> Result<Vec<u8>, image::ImageError> {
+pub(crate) fn shown_copy(frame: &Frame) -> Result<Vec<u8>, image::ImageError> {
     let (low, high) = frame.samples.iter().fold((u16::MAX, 0), |(low, high), s| (low.min(*s), high.max(*s)));
     let range = f64::from(high.saturating_sub(low).max(1));
     let bytes: Vec<u8> =
@@ -353,7 +359,7 @@ fn shown_copy(frame: &Frame) -> Result<Vec<u8>, image::ImageError> {
 }
 
 /// A new file; one that is there is an error.
-fn create(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub(crate) fn create(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }

@@ -6,6 +6,7 @@ use biplane_stage::{Context, Store, StoreError};
 
 use crate::edits::Drawn;
 use crate::prepare::{InputErrors, Job, Prepared};
+use crate::slices;
 use crate::steps::{ItemError, Steps, read_stored};
 use crate::study::Study;
 use crate::summary::aligned;
@@ -46,6 +47,9 @@ pub fn list(study: Study) -> Result<(String, bool), EditListError> {
             }
         }
     }
+    let (of_slices, unusable) = slices::list::list(&prepared, &store, &context);
+    rows.extend(of_slices);
+    faults.extend(unusable);
     let strays = prepared
         .stray_edits
         .iter()

@@ -12,6 +12,7 @@ use biplane_stage::Hashed;
 
 use crate::diagnostics::meant;
 use crate::prepare::Job;
+use crate::slices::SLICES;
 use crate::sources::FrameFacts;
 use crate::study::{Study, Trial};
 use crate::tables::same_frame;
@@ -55,6 +56,10 @@ pub fn find(study: &Study, jobs: &mut [Job]) -> Vec<(PathBuf, String)> {
     let mut strays = Vec::new();
     for path in entries(&study.edits()) {
         let name = file_name(&path);
+        if path.is_dir() && name == SLICES && !study.slices.is_empty() {
+            // What a person drew in slices: `crate::slices::drawn`.
+            continue;
+        }
         if path.is_dir() {
             let Some(trial) = study.trials.iter().position(|t| t.name == name) else {
                 let known = study.trials.iter().map(|t| t.name.as_str());
@@ -83,18 +88,18 @@ pub fn find(study: &Study, jobs: &mut [Job]) -> Vec<(PathBuf, String)> {
 }
 
 /// What is in a folder, hidden files left out, in order.
-fn entries(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn entries(folder: &Path) -> Vec<PathBuf> {
     let read = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
     let mut paths: Vec<PathBuf> = read.filter(|p| !file_name(p).starts_with('.')).collect();
     paths.sort();
     paths
 }
 
-fn file_name(path: &Path) -> String {
+pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-fn is_edit(path: &Path) -> bool {
+pub(crate) fn is_edit(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     ENDINGS.contains(&ending.as_str()) && path.is_file()
 }

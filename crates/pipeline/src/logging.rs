@@ -65,6 +65,7 @@ pub fn start(format: LogFormat, verbosity: i8) {
 pub struct Progress {
     span: tracing::Span,
     what: &'static str,
+    unit: &'static str,
     total: usize,
     done: AtomicUsize,
     told: Mutex<Instant>,
@@ -72,19 +73,20 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// For `total` items; the bar shows until this is dropped.
-    pub fn new(what: &'static str, total: usize) -> Self {
+    /// For `total` items, called `unit`; the bar shows until this is dropped.
+    pub fn new(what: &'static str, total: usize, unit: &'static str) -> Self {
         let span = tracing::info_span!("progress");
         let terminal = std::io::stderr().is_terminal();
         if terminal {
-            let template = "{msg} {wide_bar:.green} {pos}/{len} frames, {eta} to go";
-            let style = indicatif::ProgressStyle::with_template(template);
+            let template = format!("{{msg}} {{wide_bar:.green}} {{pos}}/{{len}} {unit}, {{eta}} to go");
+            let style = indicatif::ProgressStyle::with_template(&template);
             span.pb_set_style(&style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
             span.pb_set_length(total as u64);
             span.pb_set_message(what);
             span.pb_start();
         }
-        Self { span, what, total, done: AtomicUsize::new(0), told: Mutex::new(Instant::now()), terminal }
+        let (done, told) = (AtomicUsize::new(0), Mutex::new(Instant::now()));
+        Self { span, what, unit, total, done, told, terminal }
     }
 
     /// One more is done.
@@ -94,7 +96,7 @@ impl Progress {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.terminal && told.elapsed() >= EVERY && done < self.total {
             *told = Instant::now();
-            tracing::info!("{}: {done} of {} frames", self.what, self.total);
+            tracing::info!("{}: {done} of {} {}", self.what, self.total, self.unit);
         }
     }
 }

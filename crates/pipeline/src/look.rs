@@ -3,12 +3,14 @@
 use biplane_stage::{Context, Explanation, Item, Store, StoreError};
 use rayon::prelude::*;
 
-use crate::calibrate::{CalibrateError, Way, calibrate};
+use crate::calibrate::{CalibrateError, calibrate};
 use crate::edits::Drawn;
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
+use crate::slices;
+use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, SLICES, STEPS, Steps};
 use crate::study::Study;
 use crate::summary::aligned;
+use crate::walk::Way;
 
 /// Why nothing can be said.
 #[derive(Debug, thiserror::Error)]
@@ -67,6 +69,17 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
         store: &store,
         context: &context,
     };
+    let mut sliced = Vec::new();
+    for bone in 0..prepared.study.slices.len() {
+        let (found, walk) = slices::walk::walk(&prepared, bone, &store, &context, Way::Look(Vec::new()));
+        if let Way::Look(own) = walk.way {
+            sliced.extend(own);
+        }
+        if let Err(error) = found {
+            let line = format!("{SLICES}/{}: {error}", prepared.study.slices[bone].name);
+            sliced.push(Look { step: SLICES, fate: Fate::Fails, line: prepared.study.shorten(&line) });
+        }
+    }
     let looks: Vec<Vec<Look>> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");
@@ -75,7 +88,7 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
         Way::Look(before) => before,
         Way::Run(_) => Vec::new(),
     };
-    Ok(before.into_iter().chain(looks.into_iter().flatten()).collect())
+    Ok(before.into_iter().chain(sliced).chain(looks.into_iter().flatten()).collect())
 }
 
 fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {

@@ -1,4 +1,4 @@
-//! The list of pictures that runs made in the folder of results (overlays, and what shows the calibration), so that those of
+//! The list of pictures that runs made in the folder of results (overlays, and what shows the calibration and the slices), so that those of
 //! frames, trials or views that are no longer in the study can be taken away, and nothing else is.
 //!
 //! `overlays/.made.json` names each one and the content hash it was written with. What the list does not name, or
@@ -72,7 +72,7 @@ impl Made {
 fn take_away(results: &Path, name: &str, hash: &str) -> std::io::Result<bool> {
     // The list is a file that anyone can edit: it must not reach out of the folder of overlays.
     let inside = Path::new(name).components().all(|c| matches!(c, Component::Normal(_)));
-    if !inside || !["overlays/", "calibration/"].iter().any(|folder| name.starts_with(folder)) {
+    if !inside || !["overlays/", "calibration/", "slices/"].iter().any(|folder| name.starts_with(folder)) {
         return Ok(false);
     }
     let path = results.join(name);

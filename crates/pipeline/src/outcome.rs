@@ -99,6 +99,46 @@ pub struct FrameOutcome {
     pub overlays: Vec<(usize, PathBuf)>,
 }
 
+/// A bone in the slices of a volume.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SlicesOutcome {
+    /// Index of the bone in the study.
+    pub bone: usize,
+    /// Slices of the volume; none where they could not be found.
+    pub slices: usize,
+    /// Those that the bone is in.
+    pub with_bone: usize,
+    /// Contours in all of them, holes too.
+    pub contours: usize,
+    /// Contours that are holes.
+    pub holes: usize,
+    /// Slices that a person drew.
+    pub edited: Vec<usize>,
+    /// Slices to look at, and why.
+    pub flagged: Vec<(usize, String)>,
+    /// Their table, relative to the folder of results.
+    pub table: Option<PathBuf>,
+    /// Their sheet, relative to the folder of results.
+    pub sheet: Option<PathBuf>,
+}
+
+impl SlicesOutcome {
+    /// The slices to look at, by reason; `None` where there is none.
+    pub fn to_look_at(&self) -> Option<String> {
+        let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
+        for (slice, why) in &self.flagged {
+            match reasons.iter_mut().find(|(reason, _)| reason == why) {
+                Some((_, slices)) => slices.push(slice.to_string()),
+                None => reasons.push((why, vec![slice.to_string()])),
+            }
+        }
+        let count = self.flagged.len();
+        let parts: Vec<String> =
+            reasons.iter().map(|(why, slices)| format!("{} ({why})", slices.join(", "))).collect();
+        (count > 0).then(|| format!("{count} slice(s): {}", parts.join("; ")))
+    }
+}
+
 /// An item that could not be done.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
@@ -126,6 +166,8 @@ pub struct Outcome {
     pub calibration: Calibrated,
     /// In the order of trials and frames.
     pub frames: Vec<FrameOutcome>,
+    /// In the order of the study.
+    pub slices: Vec<SlicesOutcome>,
     /// Worth a look, in order.
     pub warnings: Vec<String>,
     /// In order.

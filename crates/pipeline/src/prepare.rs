@@ -25,6 +25,7 @@ use biplane_stage::{Hashed, ParamsText};
 use crate::config;
 use crate::edits;
 use crate::outcome::StartKind;
+use crate::slices;
 use crate::sources::{InputIndex, MeshFacts};
 use crate::starts::{starts_of, unused_edits, unused_starts};
 use crate::study::{Body, Correction, PlateSource, Study, Trial, View, ViewSource};
@@ -70,6 +71,8 @@ pub struct Prepared {
     pub masks: Vec<Vec<Hashed<Frame>>>,
     /// In the order of trials and frames.
     pub jobs: Vec<Job>,
+    /// Files of what a person drew in slices, with the number of the slice, one list a bone of the study.
+    pub slice_edits: Vec<Vec<(usize, PathBuf)>>,
     /// Files in `edits/` that are of no picture, and why.
     pub stray_edits: Vec<(PathBuf, String)>,
     /// Worth a look.
@@ -289,7 +292,9 @@ impl Prepared {
                 });
             }
         }
-        let stray_edits = edits::find(&study, &mut jobs);
+        let mut stray_edits = edits::find(&study, &mut jobs);
+        let (slice_edits, strays) = slices::drawn::find(&study);
+        stray_edits.extend(strays);
         warnings.extend(
             stray_edits.iter().map(|(path, why)| format!("{} is not used: {why}", study.relative(path))),
         );
@@ -311,6 +316,7 @@ impl Prepared {
                     meshes,
                     masks,
                     jobs,
+                    slice_edits,
                     stray_edits,
                     warnings,
                     segment,

@@ -8,13 +8,14 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 15] = [
+const ORDER: [&str; 16] = [
     "study",
     "fluoroscope",
     "plate",
     "beads",
     "body",
     "trial",
+    "slices",
     "spots",
     "distortion",
     "environment",

@@ -6,7 +6,7 @@ use biplane_artifact::{Match, PlateFit, Verdict, ViewFit};
 use serde::Serialize;
 
 use crate::calibrate::Calibrated;
-use crate::outcome::{BodyOutcome, FrameOutcome, Outcome};
+use crate::outcome::{BodyOutcome, FrameOutcome, Outcome, SlicesOutcome};
 use crate::overlay::COLOURS;
 use crate::results::UNKNOWN;
 use crate::study::Study;
@@ -113,6 +113,22 @@ struct CalibratedView {
     source: String,
 }
 
+/// A bone in the slices of a volume.
+#[derive(Serialize)]
+struct SlicesPart<'a> {
+    bone: &'a str,
+    volume: String,
+    slices: usize,
+    with_bone: usize,
+    contours: usize,
+    holes: usize,
+    edited: usize,
+    flagged: usize,
+    why: String,
+    sheet: Option<String>,
+    table: Option<String>,
+}
+
 #[derive(Serialize)]
 struct Page<'a> {
     name: &'a str,
@@ -126,6 +142,7 @@ struct Page<'a> {
     warnings: &'a [String],
     calibration: Option<CalibrationPart>,
     failures: Vec<(&'a str, &'a str)>,
+    slices: Vec<SlicesPart<'a>>,
     trials: Vec<TrialPart>,
     provenance: &'a Provenance,
 }
@@ -150,10 +167,31 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
         warnings: &outcome.warnings,
         calibration: calibration_part(&outcome.calibration),
         failures: outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect(),
+        slices: outcome.slices.iter().map(|found| slices_part(study, found)).collect(),
         trials: (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect(),
         provenance,
     };
     Ok(environment.get_template("report.html")?.render(minijinja::value::Serde(page))?)
+}
+
+fn slices_part<'a>(study: &'a Study, found: &SlicesOutcome) -> SlicesPart<'a> {
+    let bone = &study.slices[found.bone];
+    let link = |place: &Option<std::path::PathBuf>| {
+        place.as_deref().map(|path| url(&crate::diagnostics::slashes(path)))
+    };
+    SlicesPart {
+        bone: &bone.name,
+        volume: study.relative(&bone.volume),
+        slices: found.slices,
+        with_bone: found.with_bone,
+        contours: found.contours,
+        holes: found.holes,
+        edited: found.edited.len(),
+        flagged: found.flagged.len(),
+        why: found.to_look_at().unwrap_or_default(),
+        sheet: link(&found.sheet),
+        table: link(&found.table),
+    }
 }
 
 fn calibration_part(calibrated: &Calibrated) -> Option<CalibrationPart> {

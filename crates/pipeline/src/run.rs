@@ -11,7 +11,7 @@ use biplane_artifact::{Contour, Curves, Match};
 use biplane_stage::{Context, Hashed, How, Item, Store, StoreError, Stored};
 use rayon::prelude::*;
 
-use crate::calibrate::{CalibrateError, Calibrated, Way, calibrate};
+use crate::calibrate::{CalibrateError, Calibrated, calibrate};
 use crate::diagnostics::slashes;
 use crate::edits::Drawn;
 use crate::logging::Progress;
@@ -20,10 +20,13 @@ use crate::outcome::{BodyOutcome, ContourOutcome, Failure, FrameOutcome, Outcome
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
+use crate::slices;
 use crate::steps::{
-    CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, MATCH, OVERLAY, SEGMENT, SPOTS, STEPS, Steps,
+    CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, MATCH, OVERLAY, SEGMENT, SLICES, SPOTS, STEPS,
+    Steps,
 };
 use crate::study::{Plate, PlateSource, Study, ViewSource};
+use crate::walk::Way;
 
 /// Why a run came to no end.
 #[derive(Debug, thiserror::Error)]
@@ -106,9 +109,23 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         (prepared.warnings.clone(), STEPS.map(|name| (name, StepCount::default())));
     let mut calibrated = calibration(&prepared, &store, context, &mut steps, &mut warnings)?;
     provenance.inputs.append(&mut calibrated.inputs);
+    let sliced = pool.install(|| slices::run::run(&prepared, &store, context));
+    let Some(sliced) = sliced else {
+        return Err(RunError::Stopped { done: 0, frames: prepared.jobs.len() });
+    };
+    count(sliced.done, &mut steps, &mut warnings);
+    for failure in &sliced.failures {
+        let step = failure.item.split('/').next().unwrap_or_default();
+        steps.iter_mut().filter(|(name, _)| *name == step).for_each(|(_, count)| count.failed += 1);
+    }
+    for warning in &sliced.warnings {
+        tracing::warn!("{warning}");
+    }
+    warnings.extend(sliced.warnings);
+    provenance.inputs.extend(sliced.inputs);
     let steps_of_frames =
         Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context };
-    let progress = Progress::new("Matching", prepared.jobs.len());
+    let progress = Progress::new("Matching", prepared.jobs.len(), "frames");
     let frames: Vec<Option<Frame>> = pool.install(|| {
         prepared
             .jobs
@@ -129,9 +146,12 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         source,
     })?;
     let of_frames = frames.iter().flatten().flat_map(|f| f.made.iter().cloned());
-    let made = Made::of(of_frames.chain(written));
+    let made = Made::of(of_frames.chain(written).chain(sliced.made));
     let mut outcome = gather(frames.into_iter().flatten(), steps, warnings, &mut provenance);
     outcome.calibration = std::mem::take(&mut calibrated);
+    outcome.slices = sliced.outcomes;
+    outcome.failures.splice(0..0, sliced.failures);
+    outcome.edits.iter_mut().zip(sliced.edits).for_each(|(sum, part)| *sum += part);
     let (study, jobs) = (prepared.study, prepared.jobs.len());
     let hidden = study.hidden();
     let index = prepared.index.save(!stopped);
@@ -432,18 +452,7 @@ fn calibration(
         Way::Look(_) => Vec::new(),
     };
     let mut own = Vec::new();
-    for (step, item, how) in done {
-        if let Some((_, count)) = steps.iter_mut().find(|(name, _)| *name == step) {
-            match how {
-                How::Cached => count.cached += 1,
-                How::Ran => count.ran += 1,
-                How::Remade(damage) => {
-                    count.ran += 1;
-                    own.push(format!("{item} was made again: {damage}"));
-                }
-            }
-        }
-    }
+    count(done, steps, &mut own);
     let calibrated = calibrated.map_err(|error| match error {
         CalibrateError::Cancelled => RunError::Stopped { done: 0, frames: prepared.jobs.len() },
         CalibrateError::Failed(list) => RunError::Calibration(list.join("\n")),
@@ -456,6 +465,26 @@ fn calibration(
     }
     warnings.extend(own);
     Ok(calibrated)
+}
+
+/// Counts what was done, step by step; what had to be made again is a warning.
+fn count(
+    done: Vec<(&'static str, String, How)>,
+    steps: &mut [(&'static str, StepCount)],
+    warnings: &mut Vec<String>,
+) {
+    for (step, item, how) in done {
+        if let Some((_, count)) = steps.iter_mut().find(|(name, _)| *name == step) {
+            match how {
+                How::Cached => count.cached += 1,
+                How::Ran => count.ran += 1,
+                How::Remade(damage) => {
+                    count.ran += 1;
+                    warnings.push(format!("{item} was made again: {damage}"));
+                }
+            }
+        }
+    }
 }
 
 fn gather(
@@ -522,6 +551,9 @@ fn provenance(prepared: &Prepared) -> Provenance {
     }
     for (body, mesh) in study.bodies.iter().zip(&prepared.meshes) {
         inputs.push((study.relative(&body.mesh), mesh.facts.hash().to_hex()));
+    }
+    for bone in &study.slices {
+        parameters.push((format!("{SLICES} {}", bone.name), text(toml::to_string(&bone.find))));
     }
     parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));
     parameters.push((EDIT.to_owned(), text(toml::to_string(&study.edit))));

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use biplane_artifact::{Content, ContentHash, Frame, ModelMesh};
+use biplane_artifact::{Content, ContentHash, Frame, ModelMesh, Volume};
 use biplane_stage::{Hashed, Promise};
 use serde::{Deserialize, Serialize};
 
@@ -78,6 +78,42 @@ impl MeshFacts {
     }
 }
 
+/// What is known of one volume.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VolumeFacts {
+    hash: ContentHash,
+    /// What the reader found worth saying.
+    pub notes: Vec<String>,
+}
+
+impl VolumeFacts {
+    /// Of a volume and what its reader noted.
+    pub fn of(volume: &Hashed<Volume>, notes: Vec<String>) -> Self {
+        Self { hash: volume.hash(), notes }
+    }
+
+    /// The hash, for keys.
+    pub fn promise(&self) -> Promise<Volume> {
+        Promise::new(self.hash)
+    }
+
+    /// The hash, for the report.
+    pub fn hash(&self) -> ContentHash {
+        self.hash
+    }
+}
+
+/// Bytes and time of change (ns since 1970) of files.
+type FileLooks = BTreeMap<PathBuf, (u64, u64)>;
+
+/// A volume's files as they were when it was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct KnownVolume {
+    files: FileLooks,
+    settled: bool,
+    facts: VolumeFacts,
+}
+
 /// A file as it was when it was read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Known<F> {
@@ -95,6 +131,7 @@ struct Tables {
     code: String,
     frames: Table<FrameFacts>,
     meshes: Table<MeshFacts>,
+    volumes: BTreeMap<String, KnownVolume>,
 }
 
 /// The index of one study; many threads may ask it at once.
@@ -148,6 +185,41 @@ impl InputIndex {
         self.known(&key, path, &self.old.meshes, |t| &mut t.meshes, read)
     }
 
+    /// What is known of a volume: one file, one and its data file, or all the files of a folder. `read` is called if any of them
+    /// may have changed, and says which files it read.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn volume<E>(
+        &self,
+        path: &Path,
+        read: impl FnOnce() -> Result<(VolumeFacts, Vec<PathBuf>), E>,
+    ) -> Result<VolumeFacts, E> {
+        let key = format!("{} as a volume", self.relative(path));
+        let seen = self.new.lock().unwrap_or_else(PoisonError::into_inner).volumes.get(&key).cloned();
+        let old = self.old.volumes.get(&key).filter(|known| known.settled).cloned();
+        let known = seen.or(old).filter(|known| {
+            let files = if path.is_dir() { files_in(path) } else { known.files.keys().cloned().collect() };
+            looks(&files).is_some_and(|(now, _)| now == known.files)
+        });
+        let known = match known {
+            Some(known) => known,
+            None => {
+                // Looked at before it is read, and left alone since: a change during it makes the next run read again.
+                let before = SystemTime::now();
+                let listed = path.is_dir().then(|| files_in(path));
+                let early = listed.as_deref().and_then(looks);
+                let (facts, files) = read()?;
+                let Some((files, newest)) = early.or_else(|| looks(&files)) else { return Ok(facts) };
+                let settled = before.duration_since(newest).is_ok_and(|age| age >= SETTLED);
+                KnownVolume { files, settled, facts }
+            }
+        };
+        let facts = known.facts.clone();
+        self.new.lock().unwrap_or_else(PoisonError::into_inner).volumes.insert(key, known);
+        Ok(facts)
+    }
+
     fn known<F: Clone, E>(
         &self,
         key: &str,
@@ -193,6 +265,9 @@ impl InputIndex {
             for (key, known) in old.meshes {
                 tables.meshes.entry(key).or_insert(known);
             }
+            for (key, known) in old.volumes {
+                tables.volumes.entry(key).or_insert(known);
+            }
         }
         let trusted = |key: &String| {
             let of = |path: &String| key.strip_prefix(path).is_some_and(|rest| rest.starts_with(['#', ' ']));
@@ -200,6 +275,7 @@ impl InputIndex {
         };
         tables.frames.retain(|key, _| trusted(key));
         tables.meshes.retain(|key, _| trusted(key));
+        tables.volumes.retain(|key, _| trusted(key));
         tables.format = FORMAT;
         tables.code = CODE.to_owned();
         let mut bytes = serde_json::to_vec_pretty(&tables)?;
@@ -219,6 +295,26 @@ fn look(path: &Path) -> Option<(u64, u64, bool)> {
     let ns = modified.duration_since(SystemTime::UNIX_EPOCH).ok()?.as_nanos();
     let settled = SystemTime::now().duration_since(modified).is_ok_and(|age| age >= SETTLED);
     Some((about.len(), u64::try_from(ns).ok()?, settled))
+}
+
+/// The files of a folder, in order.
+fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
+    let mut files: Vec<PathBuf> = entries.filter(|p| p.is_file()).collect();
+    files.sort();
+    files
+}
+
+/// Size and time of change of each file, and the latest of those times; `None` if the system cannot say.
+fn looks(files: &[PathBuf]) -> Option<(FileLooks, SystemTime)> {
+    let mut newest = SystemTime::UNIX_EPOCH;
+    let mut all = BTreeMap::new();
+    for path in files {
+        let (bytes, modified_ns, _) = look(path)?;
+        newest = newest.max(SystemTime::UNIX_EPOCH + Duration::from_nanos(modified_ns));
+        all.insert(path.clone(), (bytes, modified_ns));
+    }
+    Some((all, newest))
 }
 
 #[cfg(test)]
@@ -257,6 +353,52 @@ mod tests {
         put(&path, "yx", 0);
         ask(Some(9)).unwrap();
         assert_eq!(ask(None), Err("read"), "changed a moment ago: not trusted yet");
+    }
+
+    #[test]
+    fn a_volume_is_read_again_when_one_of_its_files_changed_or_came() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, series) = (folder.path(), folder.path().join("mri"));
+        std::fs::create_dir(&series).unwrap();
+        let volume = |level: f32| Volume {
+            columns: 1,
+            rows: 1,
+            column_step_mm: [1.0, 0.0, 0.0],
+            row_step_mm: [0.0, 1.0, 0.0],
+            origins_mm: vec![[0.0; 3]],
+            samples: vec![level],
+        };
+        let ask = |path: &Path, level: Option<f32>| {
+            let index = InputIndex::open(root, &root.join(".biplane"));
+            let facts = |level| {
+                (
+                    VolumeFacts::of(&Hashed::new(volume(level)), vec!["tilted".into()]),
+                    vec![root.join("a.nhdr"), root.join("a.raw")],
+                )
+            };
+            let facts = index.volume(path, || level.map(facts).ok_or("read"));
+            index.save(true).unwrap();
+            facts
+        };
+        put(&series.join("1.dcm"), "x", 60);
+        let first = ask(&series, Some(1.0)).unwrap();
+        assert_eq!(ask(&series, None), Ok(first), "unchanged: not read");
+        put(&series.join("2.dcm"), "x", 60);
+        assert_eq!(ask(&series, None), Err("read"), "one more file");
+        ask(&series, Some(1.0)).unwrap();
+        put(&series.join("1.dcm"), "y", 50);
+        assert_eq!(ask(&series, None), Err("read"), "another time");
+
+        let header = root.join("a.nhdr");
+        put(&header, "h", 60);
+        put(&root.join("a.raw"), "r", 60);
+        ask(&header, Some(1.0)).unwrap();
+        assert!(ask(&header, None).is_ok());
+        put(&root.join("a.raw"), "s", 50);
+        assert_eq!(ask(&header, None), Err("read"), "its data file changed");
+        put(&root.join("a.raw"), "s", 0);
+        ask(&header, Some(1.0)).unwrap();
+        assert_eq!(ask(&header, None), Err("read"), "changed a moment ago: not trusted yet");
     }
 
     #[test]

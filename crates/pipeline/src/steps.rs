@@ -2,7 +2,8 @@
 //!
 //! `segment/<trial>/<frame>/<view>` makes curves from a picture, `edit/<trial>/<frame>/<view>/<body>` from what a person drew in it,
 //! `match/<trial>/<frame>/<body>` a pose from the curves of all views, `contour/<trial>/<frame>/<view>/<body>` says which curves are
-//! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies.
+//! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies. Those of slices are in
+//! [`crate::slices`].
 
 use biplane_artifact::{Artifact, Calibration, Contour, Curves, EditedContour, Match, Picture};
 use biplane_contour::{ContourInputs, ContourOf};
@@ -27,6 +28,10 @@ pub const DISTORTION: &str = "distortion";
 pub const ENVIRONMENT: &str = "environment";
 /// Step of drawings of the calibration.
 pub const DRAWING: &str = "drawing";
+/// Step of contours of slices.
+pub const SLICES: &str = "slices";
+/// Step of contours of slices with what a person drew in their place.
+pub const SLICE_EDITS: &str = "slice_edits";
 /// Step of edge curves.
 pub const SEGMENT: &str = "segment";
 /// Step of curves along what a person drew.
@@ -38,8 +43,8 @@ pub const CONTOUR: &str = "contour";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 9] =
-    [SPOTS, DISTORTION, ENVIRONMENT, DRAWING, SEGMENT, EDIT, MATCH, CONTOUR, OVERLAY];
+pub const STEPS: [&str; 11] =
+    [SPOTS, DISTORTION, ENVIRONMENT, SLICES, SLICE_EDITS, DRAWING, SEGMENT, EDIT, MATCH, CONTOUR, OVERLAY];
 
 /// Why an item has no output.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

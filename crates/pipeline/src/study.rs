@@ -12,13 +12,15 @@ use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
 use biplane_optimisation::{MatchError, MatchParams};
 use biplane_segmentation::{SegmentError, SegmentParams, TraceError, TraceParams};
+use biplane_slices::SlicesParams;
 use biplane_spots::{Look, SpotError, SpotSettings};
 
 use crate::config::{
     BeadsSection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy,
-    PipelineFile, PlateSection, TrialSection, Units,
+    PipelineFile, PlateSection, SlicesSection, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
+use crate::slices::SLICES;
 
 /// A checked study.
 #[derive(Debug)]
@@ -33,6 +35,8 @@ pub struct Study {
     pub bodies: Vec<Body>,
     /// In the order of the file.
     pub trials: Vec<Trial>,
+    /// Bones in volumes, in the order of the file.
+    pub slices: Vec<SlicedBone>,
     /// The plate of the calibration pictures, if there is one.
     pub plate: Option<Plate>,
     /// The frame of beads of the calibration pictures, if there is one.
@@ -140,6 +144,17 @@ pub struct Body {
     pub mesh: PathBuf,
     /// Unit of that file.
     pub units: Units,
+}
+
+/// A bone in the slices of a volume.
+#[derive(Debug, Clone)]
+pub struct SlicedBone {
+    /// Its name.
+    pub name: String,
+    /// A file, or a folder of DICOM slices.
+    pub volume: PathBuf,
+    /// How it is found.
+    pub find: SlicesParams,
 }
 
 /// One recording.
@@ -271,6 +286,7 @@ impl Study {
             };
             check.list.push(parameter(&text, "distortion", key, &error.to_string()));
         }
+        check.list.extend(crate::slices::section::faults(&file.slices, &text));
         let study = check.study(file);
         if check.list.is_empty() { Ok(study) } else { Err(wrong(check.list)) }
     }
@@ -294,6 +310,7 @@ impl Check {
             environment,
             body,
             trial,
+            slices,
             segment,
             edit,
             matching,
@@ -327,7 +344,19 @@ impl Check {
             .into_iter()
             .map(|b| Body { mesh: self.file(&b.mesh, "mesh"), name: b.name.into_inner(), units: b.units })
             .collect();
+        self.names("bone", slices.iter().map(|s| &s.name));
+        let apart = trial.iter().find(|t| !slices.is_empty() && t.name.get_ref() == SLICES);
+        if let Some(trial) = apart {
+            self.list.push(
+                Problem::at(
+                    trial.name.span(),
+                    "a trial cannot be called `slices` in a study with [[slices]]",
+                )
+                .help("edits/slices/ holds what a person drew in slices: give the trial another name"),
+            );
+        }
         let trials = trial.into_iter().map(|t| self.trial(t, &views, &bodies)).collect();
+        let slices = slices.into_iter().map(|s| self.sliced(s)).collect();
         let folder = self.root.join(output.folder.get_ref());
         if [self.root.clone(), self.root.join("edits"), self.root.join(".biplane")].contains(&tidy(&folder)) {
             self.list.push(
@@ -341,6 +370,7 @@ impl Check {
             views,
             bodies,
             trials,
+            slices,
             plate,
             beads,
             spots,
@@ -593,6 +623,16 @@ impl Check {
             frame_rate_hz: rate,
             bodies: chosen,
         }
+    }
+
+    fn sliced(&mut self, section: SlicesSection) -> SlicedBone {
+        let SlicesSection { name, volume, find } = section;
+        let path = self.root.join(volume.get_ref());
+        if !path.exists() {
+            let problem = Problem::at(volume.span(), "the volume is not there");
+            self.list.push(self.similar(problem, &path));
+        }
+        SlicedBone { name: name.into_inner(), volume: path, find: find.into_inner() }
     }
 
     /// Names go into paths and column names: letters, digits, `-`, `_` and `.`, and each one once.

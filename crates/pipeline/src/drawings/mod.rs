@@ -1,4 +1,5 @@
-//! Drawings by which a person judges a calibration: the plate, what is left of its distortion, the beads, the fluoroscopes in space.
+//! Drawings by which a person judges a calibration (the plate, what is left of its distortion, the beads, the fluoroscopes in space)
+//! and contours of slices.
 //!
 //! Each is a function from artifacts to SVG text, and a stage around it. A drawing holds everything it shows (the picture too),
 //! runs nothing, refers to nothing outside, and is the same bytes for the same artifacts. Where the verdict is not good it has a
@@ -14,6 +15,7 @@ mod legend;
 mod plate;
 mod residual;
 mod sheet;
+mod slices;
 mod space;
 mod svg;
 #[cfg(test)]
@@ -26,6 +28,7 @@ use serde::{Deserialize, Serialize};
 pub use bead::bead_drawing;
 pub use plate::plate_drawing;
 pub use residual::residual_drawing;
+pub use slices::{DrawSlices, SliceDrawingInputs, SliceDrawingParams, slice_drawing};
 pub use space::space_drawing;
 
 /// Why there is no drawing.
@@ -72,6 +75,9 @@ pub enum DrawingError {
         /// Samples there are.
         samples: usize,
     },
+    /// The volume cannot be cut into slices as is asked for.
+    #[error(transparent)]
+    Cut(#[from] biplane_slices::SlicesError),
     /// The picture cannot be written.
     #[error("the picture in a drawing could not be written as PNG: {0}")]
     Png(#[from] image::ImageError),

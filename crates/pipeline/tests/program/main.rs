@@ -5,4 +5,5 @@ mod calibration;
 mod edits;
 mod messages;
 mod scene;
+mod slices;
 mod study;
