@@ -125,17 +125,27 @@ pub struct SlicesOutcome {
 impl SlicesOutcome {
     /// The slices to look at, by reason; `None` where there is none.
     pub fn to_look_at(&self) -> Option<String> {
-        let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
+        let mut reasons: Vec<(&str, Vec<[usize; 2]>)> = Vec::new();
         for (slice, why) in &self.flagged {
-            match reasons.iter_mut().find(|(reason, _)| reason == why) {
-                Some((_, slices)) => slices.push(slice.to_string()),
-                None => reasons.push((why, vec![slice.to_string()])),
+            match reasons.iter_mut().find(|(reason, _)| reason == why).map(|(_, runs)| runs) {
+                Some(runs) => match runs.last_mut() {
+                    Some([_, last]) if *last + 1 == *slice => *last = *slice,
+                    _ => runs.push([*slice; 2]),
+                },
+                None => reasons.push((why, vec![[*slice; 2]])),
             }
         }
-        let count = self.flagged.len();
-        let parts: Vec<String> =
-            reasons.iter().map(|(why, slices)| format!("{} ({why})", slices.join(", "))).collect();
-        (count > 0).then(|| format!("{count} slice(s): {}", parts.join("; ")))
+        let run = |[first, last]: &[usize; 2]| match last - first {
+            0 => first.to_string(),
+            1 => format!("{first}, {last}"),
+            _ => format!("{first} to {last}"),
+        };
+        let part = |(why, runs): &(&str, Vec<[usize; 2]>)| {
+            format!("{} ({why})", runs.iter().map(run).collect::<Vec<_>>().join(", "))
+        };
+        let parts: Vec<String> = reasons.iter().map(part).collect();
+        let plural = if self.flagged.len() == 1 { "slice" } else { "slices" };
+        (!parts.is_empty()).then(|| format!("{} {plural}: {}", self.flagged.len(), parts.join("; ")))
     }
 }
 
@@ -201,5 +211,19 @@ impl Outcome {
     /// Whether anything failed: an item that could not be done, or a match that does not fit.
     pub fn any_failed(&self) -> bool {
         !self.failures.is_empty() || self.verdicts()[Verdict::Failed as usize] > 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_slices_to_look_at_are_told_as_one() {
+        let flagged = [(3, "jumped"), (5, "lost"), (6, "lost"), (7, "lost"), (9, "jumped"), (10, "jumped")];
+        let flagged = flagged.map(|(slice, why)| (slice, why.to_owned())).to_vec();
+        let outcome = SlicesOutcome { flagged, ..SlicesOutcome::default() };
+        assert_eq!(outcome.to_look_at().unwrap(), "6 slices: 3, 9, 10 (jumped); 5 to 7 (lost)");
+        assert_eq!(SlicesOutcome::default().to_look_at(), None);
     }
 }

@@ -143,6 +143,7 @@ struct Page<'a> {
     calibration: Option<CalibrationPart>,
     failures: Vec<(&'a str, &'a str)>,
     slices: Vec<SlicesPart<'a>>,
+    slices_flagged: usize,
     trials: Vec<TrialPart>,
     provenance: &'a Provenance,
 }
@@ -168,6 +169,7 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
         calibration: calibration_part(&outcome.calibration),
         failures: outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect(),
         slices: outcome.slices.iter().map(|found| slices_part(study, found)).collect(),
+        slices_flagged: outcome.slices.iter().map(|found| found.flagged.len()).sum(),
         trials: (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect(),
         provenance,
     };
@@ -365,6 +367,7 @@ mod tests {
     fn study() -> Study {
         let view = |name: &str| View {
             name: name.into(),
+            mask: None,
             source: crate::study::ViewSource::File {
                 calibration: "c".into(),
                 pixel_origin: crate::config::Origin::Centre,
@@ -376,6 +379,7 @@ mod tests {
             name: "<script> & co".into(),
             views: vec![view("A"), view("B")],
             bodies: vec![Body { name: "femur".into(), mesh: "m".into(), units: crate::config::Units::Mm }],
+            slices: vec![],
             trials: vec![Trial {
                 name: "lunge".into(),
                 frames: vec![(0, "a".into()), (1, "b".into())],

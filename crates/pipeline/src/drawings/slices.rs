@@ -11,7 +11,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use serde::{Deserialize, Serialize};
 
 use super::colours::{INK, MISSING, REJECTED, STRAY, USED};
-use super::svg::{Font, Style, Svg};
+use super::svg::{Font, Style, Svg, text_width};
 use super::{DrawingError, base64};
 
 /// Width of the sheet.
@@ -234,24 +234,98 @@ fn cell(
             }
         }
     });
-    let mut words: Vec<&str> = slice.flags.iter().map(|f| crate::slices::words(*f)).collect();
-    let (class, colour) = match (words.is_empty(), slice.edited) {
+    let (class, colour) = match (slice.flags.is_empty(), slice.edited) {
         (false, _) => ("flagged", REJECTED),
         (true, true) => ("edited", MISSING),
         (true, false) => ("", ""),
     };
-    if slice.edited {
-        words.push("drawn by hand");
-    }
     if !class.is_empty() {
         svg.group(Style::line(class, colour, 3.0), |svg| {
             svg.rectangle(corner.map(|v| v + 1.5), size.map(|v| v - 3.0));
         });
+        let mut words: Vec<&str> = slice.flags.iter().rev().map(|f| crate::slices::words(*f)).collect();
+        if slice.edited {
+            words.push("drawn by hand");
+        }
+        for (line, word) in words.iter().enumerate() {
+            let low = corner[1] + size[1] - 21.0 * line as f64;
+            svg.group(Style::area("tab", colour), |svg| {
+                svg.rectangle([corner[0], low - 22.0], [text_width(word, 14.0) + 14.0, 22.0]);
+            });
+            svg.text([corner[0] + 7.0, low - 6.0], Font::new(14.0, "#ffffff").bold(), word);
+        }
     }
-    let font = |size, colour| Font { edged: true, ..Font::new(size, colour).bold() };
-    svg.text([corner[0] + 7.0, corner[1] + 20.0], font(15.0, "#ffffff"), &number.to_string());
-    for (line, word) in words.iter().rev().enumerate() {
-        let y = corner[1] + size[1] - 9.0 - 17.0 * line as f64;
-        svg.text([corner[0] + 7.0, y], font(14.0, colour), word);
+    let number_font = Font { edged: true, ..Font::new(15.0, "#ffffff").bold() };
+    svg.text([corner[0] + 7.0, corner[1] + 20.0], number_font, &number.to_string());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use biplane_artifact::{SliceFlag, SlicePoint};
+
+    /// Slices of 30 x 20 pixels with a square in those from `first` on.
+    fn sample(count: usize, first: usize) -> (Volume, SliceContours) {
+        let origins_mm: Vec<[f64; 3]> = (0..count).map(|k| [0.0, 0.0, k as f64]).collect();
+        let corners = [[14.0, 8.0], [18.0, 8.0], [18.0, 12.0], [14.0, 12.0]];
+        let square = corners.map(|[i, j]| SlicePoint::rounded(i, j, 0.1)).to_vec();
+        let slice = |(k, origin_mm): (usize, &[f64; 3])| ContourSlice {
+            origin_mm: *origin_mm,
+            contours: if k < first { vec![] } else { vec![SliceContour { points: square.clone() }] },
+            flags: vec![],
+            edited: false,
+        };
+        let contours = SliceContours {
+            columns: 30,
+            rows: 20,
+            column_step_mm: [0.5, 0.0, 0.0],
+            row_step_mm: [0.0, 1.0, 0.0],
+            slices: origins_mm.iter().enumerate().map(slice).collect(),
+            warnings: vec![],
+        };
+        let volume = Volume {
+            columns: 30,
+            rows: 20,
+            column_step_mm: [0.5, 0.0, 0.0],
+            row_step_mm: [0.0, 1.0, 0.0],
+            samples: (0..600 * count).map(|n| (n % 251) as f32).collect(),
+            origins_mm,
+        };
+        (volume, contours)
+    }
+
+    #[test]
+    fn every_slice_is_shown_where_they_are_few_and_all_that_are_marked_where_they_are_many() {
+        let (_, contours) = sample(20, 5);
+        assert_eq!(shown(&contours.slices), (4..20).collect::<Vec<_>>(), "one before the bone");
+        let (_, mut contours) = sample(200, 0);
+        contours.slices[33].flags.push(SliceFlag::Lost);
+        contours.slices[34].edited = true;
+        let few = shown(&contours.slices);
+        assert_eq!(few[..12], [0, 4, 8, 12, 16, 20, 24, 28, 32, 33, 34, 36]);
+        let (_, contours) = sample(3, 9);
+        assert_eq!(shown(&contours.slices), [0, 1, 2], "where the bone is nowhere, all");
+    }
+
+    #[test]
+    fn the_sheet_is_cut_to_the_bone_in_mm_and_says_what_to_look_at() {
+        let (volume, mut contours) = sample(3, 1);
+        contours.slices[1].flags = vec![SliceFlag::Jumped, SliceFlag::TouchesBorder];
+        contours.slices[2].edited = true;
+        let cut = Cut::around(&contours);
+        // The square with 6 mm around it: 12 pixels along i, 6 along j.
+        assert_eq!((cut.first, cut.last), ([2, 2], [29, 18]));
+        let params = SliceDrawingParams { bone: "a<b".into(), across: Across::Stored };
+        let svg = slice_drawing(&volume, &contours, &params).unwrap();
+        assert!(
+            svg.contains("a&lt;b: 3 slices, 2 with the bone")
+                && svg.contains(">jumped<")
+                && svg.contains(">touches the border<")
+        );
+        assert_eq!(svg.matches("class=\"edited\"").count(), 1);
+        // In mm: i is halved, j is not.
+        assert_eq!(svg.matches("M7 8L9 8L9 12L7 12Z").count(), 2);
+        let (other, _) = sample(4, 1);
+        assert!(matches!(slice_drawing(&other, &contours, &params), Err(DrawingError::Size { .. })));
     }
 }

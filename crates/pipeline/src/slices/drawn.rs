@@ -134,7 +134,13 @@ fn read_one(
                 open.name
             ));
         }
-        if volume_changed {
+        let other =
+            [("slice", &edit.about.frame, slice.to_string()), ("bone", &edit.about.view, bone.name.clone())];
+        let other =
+            other.iter().find_map(|(what, said, is)| Some((what, said.as_ref().filter(|s| *s != is)?)));
+        if let Some((what, said)) = other {
+            warnings.push(format!("{file} was written for {what} {said}; it is used here, as its name says"));
+        } else if volume_changed {
             warnings.push(format!(
                 "{file}: the volume has changed since it was drawn; it is used, look whether it still fits"
             ));
