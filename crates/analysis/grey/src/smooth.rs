@@ -6,7 +6,7 @@ use pulp::Arch;
 use crate::{Grey, scaled_rows};
 
 /// Half of a Gaussian's weights, from its middle outwards to 4 standard deviations; the whole sums to 1.
-fn half_kernel(sigma: f64) -> Vec<f32> {
+pub(crate) fn half_kernel(sigma: f64) -> Vec<f32> {
     let reach = (4.0 * sigma).ceil() as usize;
     let weights: Vec<f64> = (0..=reach).map(|i| (-0.5 * (i as f64 / sigma).powi(2)).exp()).collect();
     let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();

@@ -8,7 +8,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use biplane_artifact::Frame;
-use biplane_grey::{Grey, Noise};
+use biplane_grey::Grey;
 use biplane_segmentation::{Method, SegmentParams, curves, edges_of, link};
 use biplane_spline::{Smoothing, Spline};
 
@@ -81,7 +81,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let map = edges_of(&frame, None, &params);
         println!("\nsigma {smoothing_px} px, {} edge points", map.points.len());
         let smooth = least(|| Grey::of_smoothed(&frame, smoothing_px));
-        let noise = least(|| Noise::of(&frame));
+        let smoothed = Grey::of_smoothed(&frame, smoothing_px);
+        let noise = least(|| smoothed.noise_before_smoothing(smoothing_px));
         let edges = least(|| edges_of(&frame, None, &params));
         let linked = least(|| link(&map, &params));
         let whole = least(|| curves(&frame, None, &params));

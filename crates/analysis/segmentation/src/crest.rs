@@ -13,7 +13,7 @@
 //! [`crate::curved`] takes both out.
 //!
 //! **Its standard deviation** is that of the second derivative of smoothed noise over the third derivative of the edge (Canny
-//! 1986), with the noise of the picture at this level: white noise of single pixels alone.
+//! 1986), with the noise of the smoothed picture at this level.
 
 use biplane_geometry::{EdgePoint, Vector2};
 use biplane_grey::{Grey, Noise, Processor};

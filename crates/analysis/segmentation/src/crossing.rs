@@ -8,7 +8,7 @@
 //! zero; between the two the field counts as linear. As with crests, the gradient's size decides by hysteresis what is an edge.
 
 use biplane_geometry::{EdgePoint, Vector2};
-use biplane_grey::{Grey, Noise};
+use biplane_grey::Grey;
 
 use crate::crest::{Field, Operator};
 use crate::edges::{BORDER, CANDIDATE, EdgeMap, STRONG, keep_connected, point_at};
@@ -18,12 +18,7 @@ use crate::{Method, SegmentParams};
 const REGION_SMOOTHING_PX: f64 = 1.0;
 
 /// Finds the crossings of the field that the method names.
-pub(crate) fn find(
-    smooth: &Grey,
-    noise: impl FnOnce() -> Noise,
-    params: &SegmentParams,
-    wanted: impl Fn(u32) -> bool,
-) -> EdgeMap {
+pub(crate) fn find(smooth: &Grey, params: &SegmentParams, wanted: impl Fn(u32) -> bool) -> EdgeMap {
     let (w, h) = (smooth.width, smooth.height);
     let field = match params.method {
         Method::Region => region(smooth, params),
@@ -49,7 +44,7 @@ pub(crate) fn find(
         }
     }
     let pixels = keep_connected(w, marks, wanted);
-    let noise = noise();
+    let noise = smooth.noise_before_smoothing(params.smoothing_px);
     let blur = (params.smoothing_px.powi(2) + 0.1).sqrt();
     let point = |&pixel: &u32| -> Option<EdgePoint> {
         let k = pixel as usize;

@@ -6,7 +6,7 @@
 //! **crossing** of zero by some field (Laplacian of Gaussian, thresholding, region growing: [`crate::crossing`]).
 
 use biplane_geometry::{EdgePoint, Point2, Vector2};
-use biplane_grey::{Grey, Noise};
+use biplane_grey::Grey;
 
 use crate::{Method, SegmentParams, crest, crossing};
 
@@ -45,17 +45,11 @@ pub fn find_edges(width: usize, height: usize, samples: Vec<f32>, params: &Segme
         return EdgeMap::default();
     }
     let grey = Grey { width, height, samples };
-    find(&grey.smoothed(params.smoothing_px), || grey.noise(), None, params)
+    find(&grey.smoothed(params.smoothing_px), None, params)
 }
 
-/// Finds the edge points of a smoothed picture, where `mask` (of the same size, if any) is not 0, given the noise that it had
-/// before it was smoothed.
-pub(crate) fn find(
-    smooth: &Grey,
-    noise: impl FnOnce() -> Noise,
-    mask: Option<&[u16]>,
-    params: &SegmentParams,
-) -> EdgeMap {
+/// Finds the edge points of a picture that was smoothed as the parameters say, where `mask` (of the same size, if any) is not 0.
+pub(crate) fn find(smooth: &Grey, mask: Option<&[u16]>, params: &SegmentParams) -> EdgeMap {
     let (width, height) = (smooth.width, smooth.height);
     if width < 8 || height < 8 {
         return EdgeMap { width, height, ..EdgeMap::default() };
@@ -73,10 +67,14 @@ pub(crate) fn find(
             let field = crest::Field { smooth, operator };
             let [low, high] = params.thresholds(&field);
             let pixels = keep_connected(width, field.crests(low, high), wanted);
-            let (points, blurs) = field.points(&pixels, &noise(), params.smoothing_px);
+            let (points, blurs) = field.points(
+                &pixels,
+                &smooth.noise_before_smoothing(params.smoothing_px),
+                params.smoothing_px,
+            );
             EdgeMap { width, height, points, pixels, blurs, fit: crest::FIT_VARIANCE / 2.0 }
         }
-        None => crossing::find(smooth, noise, params, wanted),
+        None => crossing::find(smooth, params, wanted),
     }
 }
 

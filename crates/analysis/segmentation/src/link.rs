@@ -255,7 +255,7 @@ mod tests {
         // A straight edge of which a mask hides some columns.
         let curves = |hidden: std::ops::Range<usize>| {
             let mask: Vec<u16> = (0..96 * 96).map(|k| u16::from(!hidden.contains(&(k % 96)))).collect();
-            let found = find(&grey.smoothed(1.0), || grey.noise(), Some(&mask), &SegmentParams::default());
+            let found = find(&grey.smoothed(1.0), Some(&mask), &SegmentParams::default());
             linked(&found, 5, 6.0).len()
         };
         assert_eq!(curves(0..0), 1);

@@ -2,7 +2,7 @@
 
 use biplane_artifact::{Curves, Frame};
 use biplane_geometry::Curve;
-use biplane_grey::{Grey, Noise};
+use biplane_grey::Grey;
 use biplane_stage::{Context, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -260,11 +260,10 @@ pub fn curves(frame: &Frame, mask: Option<&Frame>, params: &SegmentParams) -> Re
 /// The edge points of a frame, where `mask` (if any, of the same size) is not 0.
 pub fn edges_of(frame: &Frame, mask: Option<&Frame>, params: &SegmentParams) -> EdgeMap {
     let smooth = Grey::of_smoothed(frame, params.smoothing_px);
-    find(&smooth, || Noise::of(frame), mask.map(|m| m.samples.as_slice()), params)
+    find(&smooth, mask.map(|m| m.samples.as_slice()), params)
 }
 
 /// The edge curves of a grey picture, where `mask` (if any) is not 0.
 pub fn curves_of(grey: &Grey, mask: Option<&[u16]>, params: &SegmentParams) -> Vec<Curve> {
-    let smooth = grey.smoothed(params.smoothing_px);
-    link(&find(&smooth, || grey.noise(), mask, params), params)
+    link(&find(&grey.smoothed(params.smoothing_px), mask, params), params)
 }

@@ -56,7 +56,7 @@ pub fn find_spots(frame: &Frame, params: &SpotParams) -> Result<Spots, SpotError
     let grey = Grey::of(frame);
     let border = border(&grey);
     let even = border.map_or_else(|| grey.clone(), |circle| mirrored_beyond(&grey, &circle));
-    let finder = Finder { field: Field { grey: &grey, border }, params, noise: grey.noise().overall() };
+    let finder = Finder { field: Field { grey: &grey, border }, params, noise: grey.noise() };
     let mut spots = finder.spots(&even);
     spots.sort_by(|a, b| a.at_px[1].total_cmp(&b.at_px[1]).then(a.at_px[0].total_cmp(&b.at_px[0])));
     let warnings = finder.warnings(&spots, &even);
