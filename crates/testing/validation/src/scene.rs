@@ -6,10 +6,11 @@
 
 use std::path::{Path, PathBuf};
 
-use biplane::calibrate::{CalibrateError, Way, calibrate};
+use biplane::calibrate::{CalibrateError, calibrate};
 use biplane::prepare::{InputErrors, Prepared};
 use biplane::study::{Study, StudyError};
 use biplane::tables::same_frame;
+use biplane::walk::Way;
 use biplane_acquisition::images::ImageError;
 use biplane_artifact::{Calibration, Content, ContentHash, Curves, ModelMesh};
 use biplane_fluoroscope::Fluoroscope;
