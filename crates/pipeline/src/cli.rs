@@ -563,7 +563,7 @@ fn slices_lines(study: &Study, outcome: &Outcome) -> String {
     let line = |found: &SlicesOutcome| {
         let name = &study.slices[found.bone].name;
         if found.slices == 0 {
-            return format!("Slices of {name}: not found\n");
+            return format!("Slices of {name}: none, see above\n");
         }
         let mut line = format!(
             "Slices of {name}: {} contours in {} of {} slices",

@@ -113,7 +113,7 @@ fn write(
         name: of.name.clone(),
         colour: COLOURS[0],
         pieces: pieces(&contours.slices[slice], pixel_mm(contours)),
-        flags: Some(flags_of(&contours.slices[slice])).filter(|f| !f.is_empty()).into_iter().collect(),
+        flags: remarks(slice, &contours.slices[slice]),
     };
     let sketch = Sketch {
         trial: SLICES.to_owned(),
@@ -137,6 +137,16 @@ fn write(
         _ => EditCommandError::Write { path: slashes(&path), source },
     })?;
     Ok(path)
+}
+
+/// What a person should know before editing a slice.
+fn remarks(number: usize, slice: &ContourSlice) -> Vec<String> {
+    let flags = Some(flags_of(slice)).filter(|flags| !flags.is_empty()).map(|f| format!("look at it: {f}"));
+    let how = format!(
+        "Slice {number}: every path is closed, one within another is a hole, and what is here takes the place of all contours of the \
+         slice. An empty layer says that the bone is not in it."
+    );
+    flags.into_iter().chain([how]).collect()
 }
 
 /// The contours of a slice as closed pieces.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use biplane_acquisition::edits::read_edit;
-use biplane_artifact::{ContentHash, ContentHasher, EditedContour, SliceContours};
+use biplane_artifact::{ContentHash, ContentHasher, EditedContour, EditedPiece, SliceContours};
 use biplane_slices::Across;
 use biplane_stage::Hashed;
 
@@ -12,6 +12,9 @@ use crate::diagnostics::meant;
 use crate::edits::{entries, file_name, is_edit};
 use crate::sources::VolumeFacts;
 use crate::study::{SlicedBone, Study};
+
+/// An end of a piece this near to the border of the slice was cut off there, px: points are at most 1 px apart.
+const BORDER_PX: f64 = 1.5;
 
 /// What a person drew in one slice.
 #[derive(Debug, Clone)]
@@ -126,14 +129,14 @@ fn read_one(
     let mut warnings: Vec<String> = edit.notes.iter().map(|note| format!("{file}: {note}")).collect();
     let volume_changed = edit.about.picture.is_some_and(|hash| hash != picture_hash(facts, bone.find.across));
     let Some(body) = edit.bodies.into_iter().next() else { return Ok(None) };
+    let mut contour = body.contour;
     if body.touched {
-        if let Some(open) = body.contour.pieces.iter().find(|p| !p.closed) {
-            return Err(format!(
-                "{file}: piece `{}` is open, or leaves the slice; a bone's contour in a slice is closed: close the path (in a table, \
-                 end at its first point or say closed = 1), within the picture and without marks",
-                open.name
-            ));
-        }
+        contour = closed(contour, size).map_err(|name| {
+            format!(
+                "{file}: piece `{name}` is open; a bone's contour in a slice is closed: close the path, without marks (in a table, end at \
+                 its first point or say closed = 1). Only at the border of the slice it may be open"
+            )
+        })?;
         let other =
             [("slice", &edit.about.frame, slice.to_string()), ("bone", &edit.about.view, bone.name.clone())];
         let other =
@@ -149,9 +152,64 @@ fn read_one(
     Ok(Some(DrawnSlice {
         slice,
         file: file.to_owned(),
-        contour: Hashed::new(body.contour),
+        contour: Hashed::new(contour),
         touched: body.touched,
         volume_changed,
         warnings,
     }))
+}
+
+/// The pieces as closed contours. Where the border of the slice cuts one, its stretches within are joined along the border.
+///
+/// # Errors
+/// The name of a piece that is open within the slice.
+fn closed(contour: EditedContour, size: [usize; 2]) -> Result<EditedContour, String> {
+    let at_border =
+        |p: &[f64; 2]| (0..2).any(|a| p[a] <= BORDER_PX - 0.5 || p[a] >= size[a] as f64 - 0.5 - BORDER_PX);
+    let mut pieces: Vec<EditedPiece> = Vec::new();
+    let mut joined: Option<String> = None;
+    for piece in contour.pieces {
+        if piece.closed {
+            joined = None;
+            pieces.push(piece);
+            continue;
+        }
+        let ends = [piece.points.first(), piece.points.last()];
+        if !ends.into_iter().flatten().all(at_border) {
+            return Err(piece.name);
+        }
+        match pieces.last_mut().filter(|_| joined.as_ref() == Some(&piece.name)) {
+            Some(last) => last.points.extend(piece.points),
+            None => {
+                joined = Some(piece.name.clone());
+                pieces.push(EditedPiece { closed: true, ..piece });
+            }
+        }
+    }
+    Ok(EditedContour { pieces })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn piece(name: &str, points: &[[f64; 2]], closed: bool) -> EditedPiece {
+        EditedPiece { name: name.to_owned(), points: points.to_vec(), closed }
+    }
+
+    #[test]
+    fn what_the_border_cuts_is_closed_along_it() {
+        let ring = piece("a", &[[2.0, 2.0], [4.0, 2.0], [3.0, 4.0]], true);
+        let left = piece("b", &[[2.0, 19.2], [2.0, 10.0], [6.0, 10.0], [6.0, 19.4]], false);
+        let right = piece("b", &[[8.0, 19.4], [8.0, 12.0], [9.0, 19.0]], false);
+        let other = piece("c", &[[29.4, 5.0], [20.0, 6.0], [29.0, 9.0]], false);
+        let drawn = EditedContour { pieces: vec![ring.clone(), left.clone(), right.clone(), other.clone()] };
+        let all = closed(drawn, [30, 20]).unwrap().pieces;
+        assert!(all.iter().all(|p| p.closed));
+        assert_eq!(all[0], ring);
+        assert_eq!(all[1].points, [left.points, right.points].concat());
+        assert_eq!((all.len(), &all[2].points), (3, &other.points));
+        let open = piece("d", &[[2.0, 19.2], [2.0, 10.0], [6.0, 10.0]], false);
+        assert_eq!(closed(EditedContour { pieces: vec![open] }, [30, 20]), Err("d".to_owned()));
+    }
 }

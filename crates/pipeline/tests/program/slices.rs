@@ -195,7 +195,7 @@ fn a_bad_volume_fails_alone_and_is_told() {
     assert_eq!(code, 1, "{out}");
     assert!(out.contains("slices/ball: mri/ball.nrrd"), "{out}");
     assert!(
-        out.contains("3 good, 0 doubtful, 0 failed") && out.contains("Slices of ball: not found"),
+        out.contains("3 good, 0 doubtful, 0 failed") && out.contains("Slices of ball: none, see above"),
         "{out}"
     );
     assert_eq!(scene.biplane(&["plan"]).0, 1);
