@@ -26,9 +26,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
             ),
             "**Stated deviations.** Root mean square error of edges in noisy pictures over the standard deviation that the points state (wanted: \
              0.9 to 1.15), on discs of 40 px with a step of 100 levels, and on a ball of bone of 12 mm X-rayed with the usual exposure behind the \
-             light of 120 mm of soft tissue (its inset taken out). The deviation is that of white noise, and right for it. **It is too small \
-             where neighbouring pixels share their noise**, as behind a detector that blurs its photons: the noise in a single pixel then \
-             says little of what smoothing leaves."
+             light of 120 mm of soft tissue (its inset taken out). The noise is measured after smoothing, by a mask as wide as that, so what \
+             neighbouring pixels share counts; where they share it over more than the smoothing (a detector that blurs its photons, little \
+             smoothing) the deviation is still too small."
                 .to_owned(),
             "**Rims of smooth bodies.** X-rayed without noise (bone in soft tissue, metal in air; focal spot of 0.6 mm): how far inside the true \
              outline the corrected edge points lie. A ray just inside the outline of a smooth body has hardly any way through it, so the \
