@@ -5,6 +5,8 @@
 //! above `s`, `R - r` is `s^2 / 2r`. Here `r` is the radius of curvature of the curve that was found and `s` the edge's own width, which holds
 //! the blur of the picture too; both are taken along a stretch of the curve.
 //!
+//! Corners are not discs: where the curvature is not steady, or its radius below two blurs, nothing is moved.
+//!
 //! **Guaranteed:** no point moves by more than half the blur. **Not guaranteed:** an edge that is no blurred step, like the rim of
 //! a smooth body under X-rays, whose steepest place lies inside whatever the blur; matching, which knows the body, takes that out.
 
@@ -12,6 +14,8 @@ use biplane_geometry::{Curve, EdgePoint};
 
 /// Half the stretch over which curvature is taken, in units of the edge's width.
 const STRETCH: f64 = 5.0;
+/// A closed curve with fewer points than so many half stretches is a disc, and not the outline of a body with corners.
+const DISC: f64 = 14.0;
 
 /// Corrects all points of a curve. `blurs` are squares of the edge's width at each point, px^2; below 0 for a method that finds
 /// round outlines too large by as much. `fit` times the curvature is what the fit adds, px^2.
@@ -24,14 +28,35 @@ pub(crate) fn correct(curve: &mut Curve, blurs: &[f64], fit: f64) {
     let blur_squared = *sorted.select_nth_unstable_by(n / 2, f64::total_cmp).1;
     let half = STRETCH * blur_squared.abs().sqrt();
     let course = Course::of(&curve.points, curve.closed, half);
-    let mut window = [0, 0];
+    // A short curve that closes is a disc, however tight.
+    let disc = curve.closed && (n as f64) < DISC * half;
+    let mut windows = [[0, 0]; 3];
+    let stretches = [[half, half], [half, 0.0], [0.0, half]];
     for (i, p) in curve.points.iter_mut().enumerate() {
-        let curvature = course.curvature(i, half, &mut window);
+        let found: [f64; 3] = std::array::from_fn(|w| course.curvature(i, stretches[w], &mut windows[w]));
+        let curvature = if disc {
+            found[0]
+        } else {
+            steadiest(found) * trusted(found[0].abs() * blur_squared.abs().sqrt())
+        };
         // The course is the direction turned by a quarter from x to y, so where it turns that way its centre is on the dark side.
         let outward = p.direction * curvature.signum();
         let shift = shrunk_by(curvature.abs(), blur_squared.abs(), fit);
         p.position += outward * shift * blur_squared.signum();
     }
+}
+
+/// Of the curvatures over a whole stretch and its halves the middle one, and none where they turn different ways: where two bodies
+/// meet the outline is no arc of one disc.
+fn steadiest([whole, behind, ahead]: [f64; 3]) -> f64 {
+    let same = whole * behind > 0.0 && whole * ahead > 0.0;
+    if same { whole.clamp(behind.min(ahead), behind.max(ahead)) } else { 0.0 }
+}
+
+/// How far a disc of this curvature, in units of one over the blur, can be trusted to be one, 0 to 1: a corner that was blurred
+/// looks like a disc of one or two blurs.
+fn trusted(curvature: f64) -> f64 {
+    ((0.6 - curvature) / 0.1).clamp(0.0, 1.0)
 }
 
 /// How far outside the found point the step lies, px, where the curve has this curvature, 1 / px.
@@ -97,15 +122,15 @@ impl Course {
         course
     }
 
-    /// Turn of the course around point `i`, rad a px, positive from x to y (clockwise as seen). `window` is that of the point
-    /// before, and becomes that of this one.
-    fn curvature(&self, i: usize, half: f64, window: &mut [usize; 2]) -> f64 {
+    /// Turn of the course over a stretch behind point `i` and ahead of it, rad a px, positive from x to y (clockwise as seen). `window`
+    /// is that of the point before, and becomes that of this one.
+    fn curvature(&self, i: usize, [behind, ahead]: [f64; 2], window: &mut [usize; 2]) -> f64 {
         let here = self.along[i + self.offset];
         let [first, last] = window;
-        while self.along[*first] < here - half {
+        while self.along[*first] < here - behind {
             *first += 1;
         }
-        while self.along.get(*last).is_some_and(|s| *s <= here + half) {
+        while self.along.get(*last).is_some_and(|s| *s <= here + ahead) {
             *last += 1;
         }
         let (first, last) = (*first, *last);

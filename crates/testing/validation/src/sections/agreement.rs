@@ -134,14 +134,20 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
             }
             if !frames.is_empty() {
                 let label = format!("{name}, sigma {sigma} px, {:.0} % of pixels", 100.0 * share);
-                rows.push(Row::ours(label, sums.into_iter().map(Cell::Number).collect()));
+                let above = sums[0].min(sums[1]) - sums[2];
+                rows.push(Row::ours(label, sums.into_iter().chain([above]).map(Cell::Number).collect()));
             }
         }
     }
     if rows.is_empty() {
         return Ok(None);
     }
-    let columns = ["ours and OpenCV", "ours and scikit-image", "OpenCV and scikit-image"];
+    let columns = [
+        "ours and OpenCV",
+        "ours and scikit-image",
+        "OpenCV and scikit-image",
+        "lesser of ours, less theirs",
+    ];
     let columns = columns.into_iter().map(|c| Column::at_least(c, 3)).collect();
     Ok(Some(Section {
         title: "Edges of real frames, beside OpenCV's and scikit-image's".to_owned(),
