@@ -17,7 +17,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
+    &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline", "biplane-surface"],
     &["biplane-edge-field", "biplane-outline"],
     &[
         "biplane-acquisition",
@@ -26,6 +26,10 @@ const LAYERS: &[&[&str]] = &[
         "biplane-environment",
         "biplane-segmentation",
         "biplane-slices",
+        "biplane-lofting",
+        "biplane-label-surface",
+        "biplane-point-model",
+        "biplane-axes",
         "biplane-contour",
         "biplane-optimisation",
     ],
@@ -38,7 +42,7 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 15] = [
+const METHOD: [&str; 20] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
@@ -46,6 +50,11 @@ const METHOD: [&str; 15] = [
     "crates/analysis/grey",
     "crates/analysis/segmentation",
     "crates/analysis/slices",
+    "crates/analysis/surface",
+    "crates/analysis/lofting",
+    "crates/analysis/label-surface",
+    "crates/analysis/point-model",
+    "crates/analysis/axes",
     "crates/analysis/spline",
     "crates/analysis/spots",
     "crates/matching/contour",

@@ -4,6 +4,8 @@
 //! mesh) and never be stored. [`Artifact`] is content that a stage made and the store keeps: it can be written to bytes
 //! and read back. Both say their kind and schema number, which go into the cache key of whatever reads them.
 
+mod body_axes;
+mod bone_surface;
 mod calibration;
 mod content;
 mod contour;
@@ -16,10 +18,13 @@ mod model;
 mod npy;
 mod picture;
 mod plate;
+mod ply;
 mod slice_contours;
 mod spots;
 mod volume;
 
+pub use body_axes::{AxesFeature, AxesSource, BodyAxes, BodyKind, Landmark, Landmarks, Side};
+pub use bone_surface::{BoneSurface, SurfaceFault, SurfaceReport};
 pub use calibration::{Calibration, DistortionTable, PixelOrigin};
 pub use content::{Artifact, Content, ContentHash, ContentHasher, DecodeError};
 pub use contour::{Contour, ContourPiece, EditedContour, EditedPiece};

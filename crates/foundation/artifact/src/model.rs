@@ -2,7 +2,8 @@
 
 use biplane_geometry::{Mesh, Pose};
 
-use crate::{Content, ContentHash, ContentHasher};
+use crate::content::hash_encoded;
+use crate::{Artifact, Content, ContentHash, ContentHasher, DecodeError, ply};
 
 /// A body's mesh in model coordinates, mm, wound outward where it is closed.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,19 +11,19 @@ pub struct ModelMesh(pub Mesh);
 
 impl Content for ModelMesh {
     const KIND: &'static str = "model";
-    const SCHEMA: u32 = 1;
+    const SCHEMA: u32 = 2;
     fn content_hash(&self) -> ContentHash {
-        let Self(mesh) = self;
-        let mut bytes = Vec::with_capacity(mesh.vertices().len() * 24 + mesh.triangles().len() * 12);
-        bytes.extend(
-            mesh.vertices().iter().flat_map(|v| [v.x, v.y, v.z]).flat_map(|c| c.to_bits().to_le_bytes()),
-        );
-        bytes.extend(mesh.triangles().iter().flatten().flat_map(|v| v.to_le_bytes()));
-        ContentHasher::new(Self::KIND, Self::SCHEMA)
-            .unsigned(mesh.vertices().len() as u64)
-            .unsigned(mesh.triangles().len() as u64)
-            .bytes(&bytes)
-            .finish()
+        hash_encoded::<Self>(&self.encode())
+    }
+}
+
+impl Artifact for ModelMesh {
+    const EXTENSION: &'static str = "ply";
+    fn encode(&self) -> Vec<u8> {
+        ply::encode(&self.0, "biplane model, mm, model frame")
+    }
+    fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
+        ply::decode(bytes).map(|(mesh, _)| Self(mesh)).map_err(DecodeError::of::<Self>)
     }
 }
 
@@ -40,5 +41,32 @@ impl Content for Start {
             h.float(*v);
         }
         h.finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use biplane_geometry::Point3;
+
+    fn tetrahedron() -> Mesh {
+        let at = [[0.0, 0.0, 0.1], [1.0, 0.0, -0.0], [0.0, 1.0, 1e-300], [0.0, 0.0, 1.0]];
+        let vertices = at.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+        Mesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap()
+    }
+
+    #[test]
+    fn a_mesh_comes_back_with_every_bit_and_damage_is_found() {
+        let model = ModelMesh(tetrahedron());
+        let bytes = model.encode();
+        let back = ModelMesh::decode(&bytes).unwrap();
+        assert_eq!(back.encode(), bytes);
+        assert_eq!(back, model);
+        for cut in 0..bytes.len() {
+            assert!(ModelMesh::decode(&bytes[..cut]).is_err(), "cut at {cut}");
+        }
+        let text = String::from_utf8_lossy(&bytes[..180]).replace("vertex 4", "vertex 9");
+        let claimed = [text.as_bytes(), &bytes[180..]].concat();
+        assert!(ModelMesh::decode(&claimed).is_err());
     }
 }

@@ -1,0 +1,1 @@
+//! Local coordinate systems of bones and implants.

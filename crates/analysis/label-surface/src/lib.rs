@@ -1,0 +1,1 @@
+//! Maps of labels to a closed mesh.

@@ -1,0 +1,1 @@
+//! Contours of slices to a closed mesh.

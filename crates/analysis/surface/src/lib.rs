@@ -1,0 +1,1 @@
+//! A mesh as a surface in space.
