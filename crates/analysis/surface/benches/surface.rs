@@ -49,6 +49,11 @@ fn main() {
     let both = |a: &Mesh, to: &Surface| farthest(a, to, 1e-3);
     tell("farthest point, fine from coarse, to 0.001 mm", least(3, || both(&femur, &other)), 0.4);
     tell("farthest point, coarse from fine, to 0.001 mm", least(3, || both(&coarse, &surface)), 0.4);
+    println!(
+        "at most {:.4} and {:.4} mm",
+        both(&femur, &other).at_most_mm,
+        both(&coarse, &surface).at_most_mm
+    );
 }
 
 /// The same places in an order without sense.

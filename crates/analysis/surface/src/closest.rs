@@ -83,19 +83,19 @@ impl Surface {
                 Child::Node(number) => {
                     let node = &self.nodes[number as usize];
                     let mut square = [0.0_f32; 4];
-                    for axis in 0..3 {
-                        for k in 0..4 {
-                            let off =
-                                (node.low[axis][k] - at[axis]).max(at[axis] - node.high[axis][k]) - slack;
+                    for ((low, high), at) in node.low.iter().zip(&node.high).zip(at) {
+                        for ((s, low), high) in square.iter_mut().zip(low).zip(high) {
+                            let (below, above) = (low - at, at - high);
+                            let off = if below > above { below } else { above } - slack;
                             let off = if off > 0.0 { off } else { 0.0 };
-                            square[k] += off * off;
+                            *s += off * off;
                         }
                     }
                     let mut near = [0_u64; 4];
                     let mut count = 0;
-                    for k in 0..4 {
-                        if square[k] <= most && square[k] < f32::INFINITY {
-                            near[count] = u64::from(square[k].to_bits()) << 32 | u64::from(node.child[k]);
+                    for (s, code) in square.iter().zip(node.child) {
+                        if *s <= most && *s < f32::INFINITY {
+                            near[count] = u64::from(s.to_bits()) << 32 | u64::from(code);
                             count += 1;
                         }
                     }

@@ -14,6 +14,7 @@ mod crossing;
 mod distances;
 mod edges;
 mod farthest;
+mod overlay;
 mod predicates;
 mod self_crossing;
 mod side;

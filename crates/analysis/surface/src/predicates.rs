@@ -38,10 +38,10 @@ fn exact_side_of_plane(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> i32 {
     let from_a = |p: &Point3| [0, 1, 2].map(|i| Expansion::difference(p[i], a[i]));
     let (u, v, w) = (from_a(b), from_a(c), from_a(d));
     let mut value = Expansion::ZERO;
-    for i in 0..3 {
+    for (i, height) in w.iter().enumerate() {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         let minor = u[j].times(&v[k]).plus(&u[k].times(&v[j]).negative());
-        value = value.plus(&minor.times(&w[i]));
+        value = value.plus(&minor.times(height));
     }
     value.sign()
 }

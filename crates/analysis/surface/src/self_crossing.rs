@@ -3,9 +3,11 @@
 //! Both trees are gone down together, by pairs of boxes that meet; pairs of triangles whose own boxes meet are decided exactly
 //! (`crossing.rs`).
 
+use biplane_geometry::Point3;
+
 use crate::crossing::{Meeting, meeting};
 use crate::predicates::side_of_plane;
-use crate::tree::{Child, Span, Surface, child};
+use crate::tree::{Child, Span, Surface, child, ends};
 
 impl Surface {
     /// Pairs of triangles that cross or overlap, the smaller number first, ascending; once there are `limit` of them the search
@@ -55,10 +57,9 @@ impl Pairs<'_> {
                     for i in 0..4 {
                         let span = first.span(i);
                         let meets = second.meets(&span);
-                        for j in (if same { i } else { 0 })..4 {
-                            if meets[j] {
-                                stack.push(((first.child[i], span), (second.child[j], second.span(j))));
-                            }
+                        let from = if same { i } else { 0 };
+                        for j in (from..4).filter(|j| meets[*j]) {
+                            stack.push(((first.child[i], span), (second.child[j], second.span(j))));
                         }
                     }
                 }
@@ -82,9 +83,11 @@ impl Pairs<'_> {
 
     fn leaves(&mut self, [a, a_end]: [u32; 2], [b, b_end]: [u32; 2], same: bool) {
         for i in a..a_end {
-            let span = Span::of(&self.first.corners[i as usize]);
+            let box_of_first = box_of(&self.first.corners[i as usize]);
             for j in (if same { i + 1 } else { b })..b_end {
-                if span.meets(&Span::of(&self.second.corners[j as usize])) && self.cross(i, j) {
+                let box_of_second = box_of(&self.second.corners[j as usize]);
+                let meets = box_of_first.iter().zip(&box_of_second).all(|(a, b)| (a.0 <= b.1) & (b.0 <= a.1));
+                if meets && self.cross(i, j) {
                     if self.found.len() >= self.limit {
                         return;
                     }
@@ -118,4 +121,9 @@ impl Pairs<'_> {
             }
         }
     }
+}
+
+/// The least and the largest coordinate of a triangle along each axis.
+fn box_of([a, b, c]: &[Point3; 3]) -> [(f64, f64); 3] {
+    [0, 1, 2].map(|axis| ends(a[axis], b[axis], c[axis]))
 }

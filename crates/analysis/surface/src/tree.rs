@@ -100,28 +100,24 @@ pub(crate) fn child(code: u32) -> Child {
 impl Span {
     const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
 
-    /// The box of some points, rounded outward.
-    pub fn of(points: &[Point3]) -> Self {
+    /// The box of a triangle, rounded outward by at least a unit in the last place.
+    pub fn of([a, b, c]: &[Point3; 3]) -> Self {
         let mut span = Self::EMPTY;
         for axis in 0..3 {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for p in points {
-                low = low.min(p[axis]);
-                high = high.max(p[axis]);
-            }
-            let (l, h) = (low as f32, high as f32);
-            let l = if f64::from(l) > low { l.next_down() } else { l };
-            let h = if f64::from(h) < high { h.next_up() } else { h };
-            span.low[axis] = l.clamp(-FARTHEST, FARTHEST);
-            span.high[axis] = h.clamp(-FARTHEST, FARTHEST);
+            let (low, high) = ends(a[axis], b[axis], c[axis]);
+            let (low, high) = (low as f32, high as f32);
+            span.low[axis] = (low - (low.abs() * f32::EPSILON + f32::MIN_POSITIVE)).max(-FARTHEST);
+            span.high[axis] = (high + (high.abs() * f32::EPSILON + f32::MIN_POSITIVE)).min(FARTHEST);
         }
         span
     }
 
     fn add(&mut self, other: &Self) {
+        // Not `min` and `max`, which look for numbers that are none.
         for axis in 0..3 {
-            self.low[axis] = self.low[axis].min(other.low[axis]);
-            self.high[axis] = self.high[axis].max(other.high[axis]);
+            let (low, high) = (other.low[axis], other.high[axis]);
+            self.low[axis] = if low < self.low[axis] { low } else { self.low[axis] };
+            self.high[axis] = if high > self.high[axis] { high } else { self.high[axis] };
         }
     }
 
@@ -135,10 +131,12 @@ impl Span {
         let [x, y, z] = [0, 1, 2].map(|a| (self.high[a] - self.low[a]).max(0.0));
         x * y + y * z + z * x
     }
+}
 
-    pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|a| self.low[a] <= other.high[a] && other.low[a] <= self.high[a])
-    }
+/// The least and the largest of three numbers. Not by `min` and `max`, which look for numbers that are none.
+pub(crate) fn ends(a: f64, b: f64, c: f64) -> (f64, f64) {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    (if c < low { c } else { low }, if c > high { c } else { high })
 }
 
 /// A coordinate in single precision, cut off where boxes are.
