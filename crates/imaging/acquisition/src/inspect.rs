@@ -2,6 +2,7 @@
 //!
 //! The kind is told by content. Nothing of a DICOM header but what describes the pixels is shown.
 
+mod mesh;
 mod volume;
 
 use std::fs::File;
@@ -19,7 +20,7 @@ use crate::calibration::{
 };
 use crate::frames::{FramesError, list_frames};
 use crate::images::{ImageError, ImageFile, ImageFormat, ImageInfo};
-use crate::meshes::{LengthUnit, MeshFile, MeshFileError, check_size, is_stl, read_unscaled};
+use crate::meshes::{LengthUnit, MeshFileError, is_cad, is_mesh};
 use crate::plates::{is_plate_list, read_plate_list};
 use crate::volumes::{VolumeFileError, VolumeFormat, is_series, read_volume};
 
@@ -67,7 +68,8 @@ pub enum InspectError {
     /// None of the kinds known.
     #[error(
         "{} is none of the files this program reads: images (PNG, TIFF, DICOM, JPEG, BMP), calibrations (MayaCam, \
-         JointTrack, source and plane as JSON, four points, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL), volumes \
+         JointTrack, source and plane as JSON, four points, distortion as CSV), lists of a plate's holes or a frame's beads, meshes (STL, PLY, \
+         OBJ, OFF, VTK, VTP), landmarks (CSV, Slicer's .fcsv and .mrk.json), volumes \
          (NRRD, NIfTI-1, a folder of DICOM slices)", path.display()
     )]
     Unknown {
@@ -112,8 +114,8 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
     if VolumeFormat::of_start(&start).is_some() {
         return Ok(volume::describe(&read_volume(path)?));
     }
-    if is_stl(&start, length) {
-        return mesh(path);
+    if is_mesh(&start, length) || is_cad(path, &start) {
+        return Ok(mesh::describe(path)?);
     }
     let unknown = || InspectError::Unknown { path: path.to_owned() };
     match read_text(path) {
@@ -128,11 +130,10 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
         },
         Err(CalibrationError::Io { source, .. }) => Err(io(source)),
         // Not text, so the last chance is a binary mesh, whose reader says what is wrong with it.
-        Err(_) => match read_unscaled(path) {
-            Ok(_) => mesh(path),
-            Err(error @ MeshFileError::Truncated { .. }) => Err(error.into()),
-            Err(_) => Err(unknown()),
-        },
+        Err(_) => mesh::describe(path).map_err(|error| match error {
+            MeshFileError::Truncated { .. } => error.into(),
+            _ => unknown(),
+        }),
     }
 }
 
@@ -355,31 +356,4 @@ fn radii(radii: impl Iterator<Item = Option<f64>>) -> String {
         None => format!("{count} not stated"),
     });
     words.collect::<Vec<_>>().join(", ")
-}
-
-fn mesh(path: &Path) -> Result<Description, InspectError> {
-    let raw = read_unscaled(path)?;
-    let MeshFile { model, encoding, triangles_in_file, topology, notes } = &raw;
-    let mesh = &model.0;
-    let mut d = Description::new(format!("mesh, {}", encoding.name()));
-    d.line("triangles", triangles_in_file.to_string());
-    d.line("vertices", mesh.vertices().len().to_string());
-    let (low, high) = mesh.bounding_box();
-    let size = high - low;
-    d.line("size", format!("{:.4} x {:.4} x {:.4} (mm, if the file is in mm)", size.x, size.y, size.z));
-    if let Err(MeshFileError::Implausible { advice, .. }) = check_size(path, mesh, LengthUnit::Millimetres) {
-        d.line("unit", format!("not mm{advice}"));
-    }
-    d.line("area", format!("{:.6} (mm^2)", mesh.area()));
-    let closed = topology.open_edges == 0;
-    let volume =
-        if closed { format!("{:.6} (mm^3)", mesh.signed_volume()) } else { "none: not closed".to_owned() };
-    d.line("volume", volume);
-    if notes.is_empty() {
-        d.line("surface", "closed, wound outward, one piece");
-    }
-    for note in notes {
-        d.line("note", note.to_string());
-    }
-    Ok(d)
 }

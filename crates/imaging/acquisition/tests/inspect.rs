@@ -43,9 +43,13 @@ fn a_mesh_in_metres_is_described_with_the_unit_it_seems_to_have() {
     let text = describe(&path).unwrap().to_string();
     for part in [
         "mesh, ascii STL",
-        "not mm: set units = \"m\"",
+        "0.0500 x 0.0500 x 0.0500 in the file's unit",
+        "0.0500 x 0.0500 x 0.0500 mm: too small for a bone or implant",
+        "50.0 x 50.0 x 50.0 mm: a bone or implant may be that",
+        "not mm: set units = \"m\" in its [[body]]",
         "closed, wound outward, one piece",
-        "0.000021 (mm^3)",
+        // In mm, as it is in metres: 50^3 / 6.
+        "volume         20833 mm^3",
     ] {
         assert!(text.contains(part), "{part} not in: {text}");
     }

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use approx::assert_relative_eq;
-use biplane_acquisition::meshes::{LengthUnit, MeshNote, StlEncoding, read_mesh};
+use biplane_acquisition::meshes::{LengthUnit, MeshFormat, MeshNote, read_mesh};
 use tempfile::TempDir;
 
 type Triangle = [[f64; 3]; 3];
@@ -57,7 +57,8 @@ fn write(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-const MM: LengthUnit = LengthUnit::Millimetres;
+const MM: Option<LengthUnit> = Some(LengthUnit::Millimetres);
+const METRES: Option<LengthUnit> = Some(LengthUnit::Metres);
 
 #[test]
 fn ascii_and_binary_hold_the_same_mesh() {
@@ -67,7 +68,7 @@ fn ascii_and_binary_hold_the_same_mesh() {
     // A binary file that starts with `solid`, and even with the word `facet`.
     let b =
         read_mesh(write(&folder, "b.stl", &binary("solid facet exported by a program", &soup)), MM).unwrap();
-    assert_eq!((a.encoding, b.encoding), (StlEncoding::Ascii, StlEncoding::Binary));
+    assert_eq!((a.format, b.format), (MeshFormat::StlAscii, MeshFormat::StlBinary));
     assert_eq!(a.model, b.model);
     assert_eq!((a.notes.as_slice(), a.triangles_in_file), (&[][..], 12));
     assert_eq!(a.model.0.vertices().len(), 8);
@@ -89,19 +90,45 @@ fn several_solids_of_one_file_are_all_read() {
 }
 
 #[test]
-fn a_closed_mesh_inside_out_is_turned_and_an_open_one_is_not() {
+fn a_mesh_inside_out_is_turned_if_it_is_closed_or_nearly_so() {
     let folder = TempDir::new().unwrap();
     let soup = reversed(cuboid([20.0, 30.0, 40.0]));
     let mesh = read_mesh(write(&folder, "a.stl", &binary("", &soup)), MM).unwrap();
-    assert_eq!(mesh.notes, vec![MeshNote::Inverted]);
+    assert_eq!(mesh.notes, vec![MeshNote::Inverted { count: 1, of: 1 }]);
     assert_eq!(mesh.notes[0].to_string(), "wound inside out; turned round");
     assert_relative_eq!(mesh.model.0.signed_volume(), 24000.0, epsilon = 1e-6);
 
+    // Half a face of six is missing, the triangle (0, 0, 40), (0, 30, 40), ... of the plane y = 0: its winding is still told.
     let open = &soup[..11];
     let mesh = read_mesh(write(&folder, "b.stl", &binary("", open)), MM).unwrap();
-    assert_eq!(mesh.notes, vec![MeshNote::Open { edges: 3 }, MeshNote::WindingUnknown]);
+    let [MeshNote::OpenInverted { count: 1 }, MeshNote::Open { edges: 3, rims: 1, longest_mm, .. }] =
+        mesh.notes[..]
+    else {
+        panic!("{:?}", mesh.notes);
+    };
+    assert_relative_eq!(longest_mm, 30.0 + 40.0 + 50.0, epsilon = 1e-9);
+    assert!(mesh.model.0.signed_volume() > 0.0);
+    assert_eq!(mesh.pieces[0].volume_mm3, None);
+
+    // Of three faces that meet at a corner it is not.
+    let half: Vec<Triangle> = [0, 1, 4, 5, 8, 9].map(|t| soup[t]).to_vec();
+    let mesh = read_mesh(write(&folder, "c.stl", &binary("", &half)), MM).unwrap();
+    assert!(matches!(
+        mesh.notes[..],
+        [MeshNote::Open { edges: 6, rims: 1, .. }, MeshNote::WindingUnknown { count: 1 }]
+    ));
     assert!(mesh.notes[1].to_string().contains("cannot be told of an open mesh"));
-    assert!(mesh.model.0.signed_volume() < 0.0, "left as it is");
+    assert_eq!(mesh.topology.inconsistent_edges, 0);
+    let area = |m: &biplane_geometry::Mesh| {
+        (0..m.triangles().len()).map(|t| m.area_vector(t)).sum::<biplane_geometry::Vector3>()
+    };
+    let given = area(
+        &biplane_geometry::Mesh::from_soup(
+            &half.iter().map(|t| t.map(biplane_geometry::Point3::from)).collect::<Vec<_>>(),
+        )
+        .unwrap(),
+    );
+    assert_relative_eq!(area(&mesh.model.0), given, epsilon = 1e-9);
 }
 
 #[test]
@@ -111,16 +138,16 @@ fn faults_of_the_surface_are_counted() {
     soup[0].swap(1, 2);
     soup.push([[0.0; 3], [0.0; 3], [20.0, 0.0, 0.0]]);
     let mesh = read_mesh(write(&folder, "a.stl", &binary("", &soup)), MM).unwrap();
-    assert_eq!(
-        mesh.notes,
-        vec![MeshNote::InconsistentWinding { edges: 3 }, MeshNote::Degenerate { triangles: 1 }]
-    );
+    assert_eq!(mesh.notes, vec![MeshNote::Rewound { triangles: 1 }, MeshNote::Degenerate { triangles: 1 }]);
+    assert_eq!(mesh.topology.inconsistent_edges, 0);
+    assert_relative_eq!(mesh.model.0.signed_volume(), 8000.0, epsilon = 1e-9);
     let mut soup = cuboid([20.0; 3]);
     soup.push([[0.0; 3], [20.0, 0.0, 0.0], [0.0, -9.0, -9.0]]);
     let mut bytes = binary("", &soup);
     bytes.extend([0; 7]);
     let mesh = read_mesh(write(&folder, "b.stl", &bytes), MM).unwrap();
-    assert!(mesh.notes.contains(&MeshNote::NonManifold { edges: 1 }), "{:?}", mesh.notes);
+    let seam = MeshNote::NonManifold { edges: 1, centre_mm: [10.0, 0.0, 0.0] };
+    assert!(mesh.notes.contains(&seam), "{:?}", mesh.notes);
     assert!(mesh.notes.contains(&MeshNote::TrailingBytes { bytes: 7 }), "{:?}", mesh.notes);
 }
 
@@ -131,12 +158,12 @@ fn a_mesh_in_metres_is_refused_with_the_unit_to_set() {
     let error = read_mesh(&path, MM).unwrap_err().to_string();
     assert!(error.contains("femur.stl would be 0.084 mm across with units = \"mm\""), "{error}");
     assert!(error.contains("set units = \"m\" if the file is in m (84 mm)"), "{error}");
-    let mesh = read_mesh(&path, LengthUnit::Metres).unwrap();
+    let mesh = read_mesh(&path, METRES).unwrap();
     let (low, high) = mesh.model.0.bounding_box();
     assert_relative_eq!((high - low).norm(), 83.72, epsilon = 0.01);
     // And the other way round.
     let path = write(&folder, "tibia.stl", &binary("", &cuboid([48.0; 3])));
-    let error = read_mesh(&path, LengthUnit::Metres).unwrap_err().to_string();
+    let error = read_mesh(&path, METRES).unwrap_err().to_string();
     assert!(error.contains("83138 mm across with units = \"m\""), "{error}");
     assert!(error.contains("set units = \"mm\""), "{error}");
     // Nothing helps.

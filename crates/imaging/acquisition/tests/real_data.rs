@@ -8,7 +8,7 @@ use biplane_acquisition::calibration::{read_calibration, read_distortion_csv, re
 use biplane_acquisition::frames::{PairBy, list_frames, pair};
 use biplane_acquisition::images::{ImageFile, ImageFormat, read_frame};
 use biplane_acquisition::inspect::describe;
-use biplane_acquisition::meshes::{LengthUnit, MeshNote, StlEncoding, read_mesh};
+use biplane_acquisition::meshes::{LengthUnit, MeshFormat, MeshNote, read_mesh};
 use biplane_artifact::{Calibration, PixelOrigin};
 use biplane_geometry::Pose;
 use nalgebra::{Matrix3, Matrix4, Vector3};
@@ -40,14 +40,14 @@ fn the_implant_sequence_pairs_and_the_femur_lands_on_its_dark_shadow() {
     assert_eq!((pairing.pairs.len(), pairing.unpaired.len()), (20, 0));
     assert_eq!((pairing.pairs[0].label.as_str(), pairing.pairs[19].label.as_str()), ("000", "100"));
 
-    let femur = read_mesh(folder.join("femur0.stl"), LengthUnit::Millimetres).unwrap();
-    assert_eq!((femur.encoding, femur.triangles_in_file), (StlEncoding::Binary, 73_119));
+    let femur = read_mesh(folder.join("femur0.stl"), Some(LengthUnit::Millimetres)).unwrap();
+    assert_eq!((femur.format, femur.triangles_in_file), (MeshFormat::StlBinary, 73_119));
     assert!(
         femur.notes.iter().any(|n| matches!(n, MeshNote::Open { .. })),
         "not watertight: {:?}",
         femur.notes
     );
-    let tibia = read_mesh(folder.join("tibia0.stl"), LengthUnit::Millimetres).unwrap();
+    let tibia = read_mesh(folder.join("tibia0.stl"), Some(LengthUnit::Millimetres)).unwrap();
     assert_eq!(tibia.triangles_in_file, 28_110);
     assert_eq!(tibia.topology.open_edges, 0, "watertight: {:?}", tibia.notes);
     assert!(tibia.model.0.signed_volume() > 0.0);
@@ -124,10 +124,10 @@ fn the_single_plane_knee_has_big_endian_tiffs_and_ascii_meshes_inside_out() {
     let frame = read_frame(&frames[0].path, 0).unwrap();
     assert_eq!((frame.width, frame.height, frame.bits), (1024, 1024, 8));
     for name in ["KR_right_6_tib.stl", "KR_right_7_fem.stl"] {
-        let mesh = read_mesh(folder.join(name), LengthUnit::Millimetres).unwrap();
-        assert_eq!(mesh.encoding, StlEncoding::Ascii);
+        let mesh = read_mesh(folder.join(name), Some(LengthUnit::Millimetres)).unwrap();
+        assert_eq!(mesh.format, MeshFormat::StlAscii);
         // The README: watertight, wound inside out.
-        assert!(mesh.notes.contains(&MeshNote::Inverted), "{name}: {:?}", mesh.notes);
+        assert!(mesh.notes.contains(&MeshNote::Inverted { count: 1, of: 1 }), "{name}: {:?}", mesh.notes);
         assert_eq!(mesh.topology.open_edges, 0, "{name}");
         assert!(mesh.model.0.signed_volume() > 0.0);
     }
@@ -169,16 +169,16 @@ fn meshes_in_metres_are_refused_and_read_with_their_unit() {
         if path.extension().is_none_or(|e| e != "stl") {
             continue;
         }
-        let error = read_mesh(&path, LengthUnit::Millimetres).unwrap_err().to_string();
+        let error = read_mesh(&path, Some(LengthUnit::Millimetres)).unwrap_err().to_string();
         assert!(error.contains("set units = \"m\""), "{error}");
-        let mesh = read_mesh(&path, LengthUnit::Metres).unwrap();
+        let mesh = read_mesh(&path, Some(LengthUnit::Metres)).unwrap();
         let (low, high) = mesh.model.0.bounding_box();
         assert!((20.0..600.0).contains(&(high - low).norm()), "{path:?}");
         println!("{}", describe(&path).unwrap());
     }
     // The README: 64,388 triangles, two bodies, open; 24,442 and 52,918 watertight. What makes the tray open are two
     // triangles with two equal corners each; without them every edge has two triangles (counted by another program).
-    let tray = read_mesh(folder.join("tibial-tray-decimated.stl"), LengthUnit::Metres).unwrap();
+    let tray = read_mesh(folder.join("tibial-tray-decimated.stl"), Some(LengthUnit::Metres)).unwrap();
     assert_eq!(tray.triangles_in_file, 64_388);
     assert!(tray.notes.contains(&MeshNote::Bodies { count: 2 }), "{:?}", tray.notes);
     assert!(tray.notes.contains(&MeshNote::Degenerate { triangles: 2 }), "{:?}", tray.notes);
@@ -186,7 +186,7 @@ fn meshes_in_metres_are_refused_and_read_with_their_unit() {
     for (name, triangles) in
         [("femoral-component-decimated.stl", 24_442), ("tibial-insert-decimated.stl", 52_918)]
     {
-        let mesh = read_mesh(folder.join(name), LengthUnit::Metres).unwrap();
+        let mesh = read_mesh(folder.join(name), Some(LengthUnit::Metres)).unwrap();
         assert_eq!((mesh.triangles_in_file, mesh.topology.open_edges), (triangles, 0), "{name}");
     }
 }

@@ -118,7 +118,7 @@ pub fn scene(root: &Path, body: &str, points: usize, params: &MatchParams) -> Re
     }
     let mesh = folder.join(format!("{body}_{points}.stl"));
     let mesh =
-        read_mesh(&mesh, LengthUnit::Millimetres).map_err(|e| SceneError::Mesh(e.to_string()))?.model.0;
+        read_mesh(&mesh, Some(LengthUnit::Millimetres)).map_err(|e| SceneError::Mesh(e.to_string()))?.model.0;
     let names: Vec<String> = file.views.iter().map(|v| v.name.clone()).collect();
     let made = Made { origin: Origin::OtherFile, claim: Claim::Accuracy, params: params.clone() };
     let calibrations: Vec<_> = views.iter().zip(&names).map(|(v, name)| v.calibration(name)).collect();

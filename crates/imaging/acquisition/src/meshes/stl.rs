@@ -2,40 +2,18 @@
 //! Ascii: `solid`, `facet normal`, `outer loop`, three times `vertex x y z`, `endloop`, `endfacet`, ..., `endsolid`.
 //!
 //! A binary file may start with the word `solid`, so the count against the file's length decides before that word does.
+//! Corners at the very same place become one vertex while they are read.
 
 use std::path::Path;
 
 use biplane_geometry::Point3;
 
-use super::MeshFileError;
-
-/// How an STL file is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StlEncoding {
-    /// Text.
-    Ascii,
-    /// 50 bytes a triangle.
-    Binary,
-}
-
-impl StlEncoding {
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ascii => "ascii STL",
-            Self::Binary => "binary STL",
-        }
-    }
-}
-
-pub(super) struct Soup {
-    pub(super) encoding: StlEncoding,
-    pub(super) triangles: Vec<[Point3; 3]>,
-    pub(super) trailing_bytes: u64,
-}
+use super::soup::Soup;
+use super::weld::Welder;
+use super::{MeshFileError, MeshFormat};
 
 /// Whether a file that starts like this and has this length may be STL.
-pub(crate) fn is_stl(start: &[u8], length: u64) -> bool {
+pub(super) fn is_stl(start: &[u8], length: u64) -> bool {
     starts_ascii(start) || count(start).is_some_and(|n| n > 0 && binary_length(n) == length)
 }
 
@@ -106,26 +84,32 @@ fn float(bytes: &[u8], at: usize) -> f32 {
 
 /// `bytes` holds at least `count` triangles.
 fn binary(bytes: &[u8], count: u32) -> Soup {
-    let triangles: Vec<[Point3; 3]> = bytes[84..]
-        .chunks_exact(50)
-        .take(count as usize)
-        .map(|t| [12, 24, 36].map(|at| Point3::from([0, 4, 8].map(|c| f64::from(float(t, at + c))))))
-        .collect();
-    let trailing_bytes = bytes.len() as u64 - binary_length(count);
-    Soup { encoding: StlEncoding::Binary, triangles, trailing_bytes }
+    let mut soup = Soup::new(MeshFormat::StlBinary);
+    let mut welder = Welder::new(count as usize / 2 + 3);
+    let triangles = bytes.get(84..).unwrap_or_default().chunks_exact(50).take(count as usize);
+    soup.triangles.reserve_exact(count as usize);
+    for t in triangles {
+        soup.triangle(
+            [12, 24, 36].map(|at| welder.add(Point3::from([0, 4, 8].map(|c| f64::from(float(t, at + c)))))),
+        );
+    }
+    soup.points = welder.finish();
+    soup.trailing_bytes = bytes.len() as u64 - binary_length(count);
+    soup
 }
 
 fn ascii(path: &Path, bytes: &[u8]) -> Result<Soup, MeshFileError> {
-    let mut triangles = Vec::new();
+    let mut soup = Soup::new(MeshFormat::StlAscii);
+    let mut welder = Welder::new(bytes.len() / 500);
     let mut corners: Vec<Point3> = Vec::with_capacity(3);
     let (mut in_solid, mut in_facet, mut last) = (false, false, 0);
     // The name of a solid may be in any encoding.
     for (i, line) in bytes.split(|b| *b == b'\n').enumerate() {
         let text = String::from_utf8_lossy(line);
-        let error = |expected| MeshFileError::Line {
+        let error = |expected: &str| MeshFileError::Line {
             path: path.to_owned(),
             line: i + 1,
-            expected,
+            expected: expected.to_owned(),
             found: format!("`{}`", text.trim().chars().take(60).collect::<String>()),
         };
         let mut words = text.split_whitespace();
@@ -152,8 +136,10 @@ fn ascii(path: &Path, bytes: &[u8]) -> Result<Soup, MeshFileError> {
                 corners.push(Point3::from(values));
             }
             "endloop" if in_facet => {
-                let triangle = <[Point3; 3]>::try_from(corners.as_slice());
-                triangles.push(triangle.map_err(|_| error("three lines `vertex x y z` before `endloop`"))?);
+                let [a, b, c] = corners[..] else {
+                    return Err(error("three lines `vertex x y z` before `endloop`"));
+                };
+                soup.triangle([a, b, c].map(|corner| welder.add(corner)));
             }
             "endfacet" if in_facet => in_facet = false,
             "endsolid" if in_solid && !in_facet => in_solid = false,
@@ -165,9 +151,10 @@ fn ascii(path: &Path, bytes: &[u8]) -> Result<Soup, MeshFileError> {
         return Err(MeshFileError::Line {
             path: path.to_owned(),
             line: last + 1,
-            expected: if in_facet { "`endfacet`" } else { "`endsolid`" },
+            expected: if in_facet { "`endfacet`" } else { "`endsolid`" }.to_owned(),
             found: "the end of the file; it is cut short".to_owned(),
         });
     }
-    Ok(Soup { encoding: StlEncoding::Ascii, triangles, trailing_bytes: 0 })
+    soup.points = welder.finish();
+    Ok(soup)
 }
