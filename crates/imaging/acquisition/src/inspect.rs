@@ -20,6 +20,7 @@ use crate::calibration::{
 };
 use crate::frames::{FramesError, list_frames};
 use crate::images::{ImageError, ImageFile, ImageFormat, ImageInfo};
+use crate::landmarks::{LandmarkFile, LandmarkFileError, LandmarkFormat};
 use crate::meshes::{LengthUnit, MeshFileError, is_cad, is_mesh};
 use crate::plates::{is_plate_list, read_plate_list};
 use crate::volumes::{VolumeFileError, VolumeFormat, is_series, read_volume};
@@ -88,6 +89,9 @@ pub enum InspectError {
     /// A mesh that cannot be read.
     #[error(transparent)]
     Mesh(#[from] MeshFileError),
+    /// Landmarks that cannot be read.
+    #[error(transparent)]
+    Landmarks(#[from] LandmarkFileError),
     /// A volume that cannot be read.
     #[error(transparent)]
     Volume(#[from] VolumeFileError),
@@ -121,6 +125,9 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, InspectError> {
     match read_text(path) {
         Ok(text) => match CalibrationFormat::of_text(&text) {
             Some(_) => calibration(path, &text),
+            None if LandmarkFormat::of_text(&text).is_some() => {
+                Ok(landmarks(&crate::landmarks::parse(path, &text)?))
+            }
             None if is_distortion_csv(&text) => Ok(distortion(&read_distortion_csv(path)?)),
             None if is_plate_list(&text) => Ok(plate(&read_plate_list(path)?)),
             None => match BeadFormat::of_text(&text) {
@@ -334,6 +341,29 @@ fn beads(format: BeadFormat, file: &BeadFile) -> Description {
     d.line("frame", "the laboratory's, if the fluoroscopes are found from it");
     for note in notes {
         d.line("note", note);
+    }
+    d
+}
+
+fn landmarks(file: &LandmarkFile) -> Description {
+    let LandmarkFile { format, turned, landmarks } = file;
+    let mut d = Description::new(format!("landmarks, {}", format.name()));
+    d.line("landmarks", landmarks.0.len().to_string());
+    d.line(
+        "frame",
+        match (format, turned) {
+            (_, true) => {
+                "left-posterior-superior; the file has right-anterior-superior, so x and y changed their sign"
+            }
+            (LandmarkFormat::Fcsv | LandmarkFormat::MrkJson, _) => {
+                "left-posterior-superior, as the file says"
+            }
+            _ => "that of the model",
+        },
+    );
+    for landmark in &landmarks.0 {
+        let [x, y, z] = landmark.at_mm;
+        d.line(landmark.name.as_str(), format!("({x:.3}, {y:.3}, {z:.3}) mm"));
     }
     d
 }

@@ -12,6 +12,7 @@ pub mod edits;
 pub mod frames;
 pub mod images;
 pub mod inspect;
+pub mod landmarks;
 pub mod meshes;
 mod places;
 pub mod plates;

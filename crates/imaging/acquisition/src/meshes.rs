@@ -13,6 +13,8 @@
 //!
 //! NURBS (STEP, IGES) are not read: a reader that meshes them would stand beside the others in `format`, and give what they give.
 
+#[cfg(test)]
+mod damage;
 pub(crate) mod edges;
 mod format;
 mod nesting;
@@ -221,9 +223,20 @@ pub(crate) fn read_as(
     path: &Path,
     choose: impl FnOnce([f64; 3]) -> Result<LengthUnit, MeshFileError>,
 ) -> Result<MeshFile, MeshFileError> {
+    of_bytes(path, contents(path)?, choose)
+}
+
+/// The same of what a file holds.
+fn of_bytes(
+    path: &Path,
+    bytes: Vec<u8>,
+    choose: impl FnOnce([f64; 3]) -> Result<LengthUnit, MeshFileError>,
+) -> Result<MeshFile, MeshFileError> {
+    let parsed = format::parse(path, &bytes)?;
+    drop(bytes);
     let soup::Soup {
         format, mut points, triangles, cut, crossed, left_out, trailing_bytes, too_many, ..
-    } = format::parse(path, &contents(path)?)?;
+    } = parsed;
     if too_many {
         let what = format!("it has more than {} triangles; simplify it", soup::MOST_TRIANGLES);
         return Err(MeshFileError::Refused { path: path.to_owned(), what });

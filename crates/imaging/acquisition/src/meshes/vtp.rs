@@ -172,7 +172,8 @@ impl File<'_> {
         let number = number(kind).ok_or_else(|| {
             self.wrong(array, "a type as Float32 or Int64", &format!("`{kind}` in the array {name}"))
         })?;
-        let text = array.text().unwrap_or_default();
+        // Remarks of VTK stand between the numbers and the end.
+        let text: String = array.children().filter(Node::is_text).filter_map(|n| n.text()).collect();
         let values = match array.attribute("format").unwrap_or("ascii") {
             "ascii" => {
                 let values = words(text.as_bytes()).map(|word| {
