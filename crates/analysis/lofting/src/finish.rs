@@ -1,0 +1,95 @@
+//! What is done to the vertices after the surface is made: triangles made more even, stairs smoothed, the volume kept.
+//!
+//! **Evening.** Vertices on the edges of a grid make slivers. Each vertex moves towards the middle of its neighbours, along the
+//! surface only, and not where the surface has an edge.
+//!
+//! **Smoothing.** Taubin, "A signal processing approach to fair surface design" (1995): a step towards the middle of the neighbours and a slightly
+//! larger one away from it, so that what is long stays and what is short goes. What the volume has changed by is taken back by moving all
+//! vertices along their normals by one length.
+
+use biplane_geometry::Vector3;
+
+/// Rounds of evening, and the share of the way in each.
+const EVENING: usize = 4;
+const EVENING_SHARE: f64 = 0.6;
+/// A vertex whose triangles' normals add up to less than this share of their lengths lies on an edge of the surface.
+const STRAIGHT: f64 = 0.9;
+/// Taubin's steps.
+const SHRINK: f64 = 0.5;
+const GROW: f64 = -0.53;
+
+/// Volume within a closed surface, mm^3.
+pub(crate) fn volume(vertices: &[Vector3], triangles: &[[u32; 3]]) -> f64 {
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| vertices[v as usize]);
+        a.dot(&b.cross(&c)) / 6.0
+    };
+    triangles.iter().map(of).sum()
+}
+
+/// What the triangles around a vertex say.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    /// Sum of the neighbours, each twice, and their number, twice.
+    sum: Vector3,
+    count: f64,
+    /// Sum of twice the triangles' area vectors, and of their lengths.
+    normal: Vector3,
+    area: f64,
+}
+
+fn around(vertices: &[Vector3], triangles: &[[u32; 3]], into: &mut Vec<Around>) {
+    into.clear();
+    into.resize(vertices.len(), Around::default());
+    for t in triangles {
+        let [a, b, c] = t.map(|v| vertices[v as usize]);
+        let normal = (b - a).cross(&(c - a));
+        let area = normal.norm();
+        for (v, others) in [(t[0], b + c), (t[1], c + a), (t[2], a + b)] {
+            let of = &mut into[v as usize];
+            of.sum += others;
+            of.count += 2.0;
+            of.normal += normal;
+            of.area += area;
+        }
+    }
+}
+
+/// Evens the triangles and smooths by `smoothing_mm` over triangles of about a `cell`.
+pub(crate) fn finish(vertices: &mut [Vector3], triangles: &[[u32; 3]], smoothing_mm: f64, cell: f64) {
+    let mut all = Vec::new();
+    for _ in 0..EVENING {
+        around(vertices, triangles, &mut all);
+        for (v, of) in vertices.iter_mut().zip(&all) {
+            let square = of.normal.norm_squared();
+            // The normals of a smooth surface add up.
+            if of.count > 0.0 && square > (STRAIGHT * of.area).powi(2) {
+                let way = of.sum / of.count - *v;
+                *v += EVENING_SHARE * (way - of.normal * (way.dot(&of.normal) / square));
+            }
+        }
+    }
+    if smoothing_mm <= 0.0 {
+        return;
+    }
+    let before = volume(vertices, triangles);
+    // A round moves what has a wavelength of a few triangles; it spreads by about half a triangle's side.
+    let rounds = (2.0 * (smoothing_mm / cell).powi(2)).ceil().clamp(1.0, 200.0) as usize;
+    for _ in 0..rounds {
+        for step in [SHRINK, GROW] {
+            around(vertices, triangles, &mut all);
+            for (v, of) in vertices.iter_mut().zip(&all).filter(|(_, of)| of.count > 0.0) {
+                *v += step * (of.sum / of.count - *v);
+            }
+        }
+    }
+    // Twice: the area changes a little on the way.
+    for _ in 0..2 {
+        around(vertices, triangles, &mut all);
+        let area: f64 = all.iter().map(|of| of.area).sum::<f64>() / 6.0;
+        let off = (before - volume(vertices, triangles)) / area.max(f64::MIN_POSITIVE);
+        for (v, of) in vertices.iter_mut().zip(&all) {
+            *v += of.normal.try_normalize(0.0).unwrap_or_default() * off;
+        }
+    }
+}
