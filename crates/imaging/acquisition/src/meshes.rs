@@ -1,10 +1,14 @@
 //! Surfaces of bodies: STL, PLY, OBJ, OFF and VTK to a mended, described mesh in mm.
 //!
-//! Read by own readers. Measured against `ply-rs-bw` 4.0.1 and `tobj` 4.0.5 on a grid of 72,200 triangles: the first takes 46 ms and 27 times
-//! the file's memory for what takes 2 ms here, and its messages are the grammar's; the second takes 25 ms, cuts every polygon as
-//! a fan, which is wrong where it is not convex, does not join continued lines, and its errors name no line. `stl_io` goes by the word `solid`, which many
-//! binary files also start with, and stops at the first of several solids. `vtkio` panics on some compressed files and miscounts the cells of version
-//! 5.1. Own code mends too (see [`repair`]).
+//! Read by own readers. Measured on a grid of 72,200 triangles against `ply-rs-bw` 4.0.1 and `tobj` 4.0.5: the first is sound, but takes 46 ms and
+//! 27 times the file's memory for what takes 4 ms here, and its messages list the grammar; the second takes 25 ms against 16 ms, cuts every
+//! polygon as a fan, which is wrong where it is not convex, does not join continued lines, and its errors name no line. `stl_io` goes by the
+//! word `solid`, which many binary files also start with, and stops at the first of several solids. `vtkio` panics on some compressed files
+//! and miscounts the cells of version 5.1.
+//!
+//! Mended by own code too (see the module `repair`). `parry3d` 0.31 welds, drops what is degenerate or there twice, and finds neighbours of a mesh of 73,119
+//! triangles in 129 ms, against 29 ms here with reading, winding and all; where triangles are wound against each other it deletes them, and
+//! it knows neither cavities nor rims.
 //!
 //! Guaranteed: coordinates are finite and in mm; the size is that of a body; no vertex is there twice, none without a triangle; every
 //! triangle has an area and no other one has the same corners; neighbours are wound alike wherever that can be; every closed piece is

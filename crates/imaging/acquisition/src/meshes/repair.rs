@@ -1,7 +1,7 @@
 //! Mends what can be mended without a guess, and describes what cannot: the pieces of a mesh, its rims, its seams.
 //!
 //! In this order: vertices at the very same place become one; triangles without area are dropped; of several triangles with the same
-//! three corners the first stays; vertices of open edges closer than 10^-6 of the box's diagonal become one (see [`super::weld`]);
+//! three corners the first stays; the two sides of a crack closer than 10^-6 of the box's diagonal become one (see [`super::weld`]);
 //! the winding is made alike and outward (see [`super::winding`]); vertices of no triangle are dropped. Nothing is filled, cut or
 //! moved otherwise: holes, T-junctions and edges of three triangles stay and are named. The order of vertices and triangles is the
 //! file's.
@@ -13,7 +13,7 @@ use super::edges::{Edge, Edges, Sets, runs_forward};
 use super::weld::{Welder, near};
 use super::winding::{Patch, Winding, area_vector, wind};
 
-/// Vertices of open edges closer than this share of the box's diagonal are one: the rounding of 32-bit floats.
+/// Open edges closer than this share of the box's diagonal are one: the rounding of 32-bit floats.
 const NEAR: f64 = 1e-6;
 
 /// What was mended.

@@ -2,9 +2,10 @@
 //!
 //! **Exact.** A table of hashes with a fixed function, so that no run differs from another; vertices keep the order in which they came.
 //!
-//! **Near.** A closed surface has nothing to weld, so only vertices of open edges are looked at. One within the tolerance of an earlier
-//! one becomes it, the nearest first, unless a triangle has both: no triangle is collapsed, and a surface cannot be eaten up from its rim. No
-//! vertex moves farther than the tolerance.
+//! **Near.** A closed surface has nothing to weld, so only open edges are looked at. A crack of rounding has two sides: open edges whose ends
+//! lie within the tolerance of each other. Each edge longer than twice the tolerance is joined to the nearest such edge, end to end.
+//! Two ends are not joined if a triangle would have both, or if one would move farther than the tolerance. So no triangle is collapsed,
+//! and a surface cannot be eaten up from its rim.
 
 use biplane_geometry::Point3;
 
@@ -85,42 +86,107 @@ pub(super) fn near(
     edges: &Edges,
     tolerance: f64,
 ) -> (Vec<u32>, usize) {
-    let mut becomes: Vec<u32> = (0..places.len() as u32).collect();
-    let mut open: Vec<u32> = edges.iter().filter(|e| e.halves.len() == 1).flat_map(|e| e.ends).collect();
-    open.sort_unstable();
-    open.dedup();
+    let becomes = || (0..places.len() as u32).collect();
+    let ends = edges.iter().filter(|e| e.halves.len() == 1).map(|e| e.ends);
+    let open: Vec<[u32; 2]> = ends
+        .filter(|ends| {
+            let [p, q] = ends.map(|v| places[v as usize]);
+            (q - p).norm() > 2.0 * tolerance
+        })
+        .collect();
     if open.is_empty() || tolerance <= 0.0 {
-        return (becomes, 0);
+        return (becomes(), 0);
     }
-    let around = around(places.len(), triangles, &open);
+    let mut chosen: Vec<u32> = open.iter().flatten().copied().collect();
+    chosen.sort_unstable();
+    chosen.dedup();
+    let around = around(places.len(), triangles, &chosen);
+    let mut joined = Joined { places, triangles, around, becomes: becomes(), members: becomes(), tolerance };
+    let middles: Vec<Point3> =
+        open.iter().map(|e| nalgebra::center(&places[e[0] as usize], &places[e[1] as usize])).collect();
     let mut cells = Cells::new(open.len(), tolerance);
-    let mut welded = 0;
-    for (k, &v) in open.iter().enumerate() {
-        let place = &places[v as usize];
-        let mine = around.of(k);
-        let shares_triangle = |other: u32| {
-            mine.iter().any(|&t| triangles[t as usize].iter().any(|&c| becomes[c as usize] == other))
+    let apart = |p: u32, q: u32| (places[p as usize] - places[q as usize]).norm();
+    for (k, &[p, q]) in open.iter().enumerate() {
+        // How far apart the ends are at most, and the ends of the other edge in the order in which they fit.
+        let fit = |other: u32| {
+            let [r, s] = open[other as usize];
+            let ways = [(apart(p, r).max(apart(q, s)), [r, s]), (apart(p, s).max(apart(q, r)), [s, r])];
+            if ways[1].0 < ways[0].0 { ways[1] } else { ways[0] }
         };
-        let nearest = cells.nearest(places, place, tolerance, shares_triangle);
-        match nearest {
-            Some(other) => {
-                becomes[v as usize] = other;
-                welded += 1;
-            }
-            None => cells.add(places, v),
+        if let Some((_, [r, s])) = cells.nearest(&middles[k], fit) {
+            joined.join(p, r);
+            joined.join(q, s);
         }
+        cells.add(&middles[k], k as u32);
     }
-    (becomes, welded)
+    let welded = joined.becomes.iter().enumerate().filter(|(v, to)| *v != **to as usize).count();
+    (joined.becomes, welded)
+}
+
+/// Vertices that are joined; each set is known by its first member, whose place it takes.
+struct Joined<'a> {
+    places: &'a [Point3],
+    triangles: &'a [[u32; 3]],
+    around: Around,
+    becomes: Vec<u32>,
+    /// The next member of the same set; the last one leads to the first.
+    members: Vec<u32>,
+    tolerance: f64,
+}
+
+impl Joined<'_> {
+    fn join(&mut self, p: u32, q: u32) {
+        let (p, q) = (self.becomes[p as usize], self.becomes[q as usize]);
+        let (first, other) = (p.min(q), p.max(q));
+        if first == other || !self.may_join(first, other) {
+            return;
+        }
+        let mut member = other;
+        loop {
+            self.becomes[member as usize] = first;
+            member = self.members[member as usize];
+            if member == other {
+                break;
+            }
+        }
+        // Two rings that exchange their successors are one.
+        self.members.swap(first as usize, other as usize);
+    }
+
+    /// Whether no member of the other set would move too far or is in a triangle with the first set.
+    fn may_join(&self, first: u32, other: u32) -> bool {
+        let mut member = other;
+        for _ in 0..MOST_TOGETHER {
+            let place = &self.places[member as usize];
+            let around = self.around.of(member);
+            let shared = || {
+                around
+                    .iter()
+                    .any(|t| self.triangles[*t as usize].iter().any(|c| self.becomes[*c as usize] == first))
+            };
+            if (place - self.places[first as usize]).norm() > self.tolerance || shared() {
+                return false;
+            }
+            member = self.members[member as usize];
+            if member == other {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 /// Triangles around some vertices.
 struct Around {
+    /// For each vertex its place among those chosen.
+    place: Vec<u32>,
     starts: Vec<u32>,
     triangles: Vec<u32>,
 }
 
 impl Around {
-    fn of(&self, k: usize) -> &[u32] {
+    fn of(&self, vertex: u32) -> &[u32] {
+        let k = self.place[vertex as usize] as usize;
         &self.triangles[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 }
@@ -149,66 +215,54 @@ fn around(vertices: usize, triangles: &[[u32; 3]], chosen: &[u32]) -> Around {
         around[next[k as usize] as usize] = t;
         next[k as usize] += 1;
     }
-    Around { starts, triangles: around }
+    Around { place, starts, triangles: around }
 }
 
-/// Vertices by the cube of space that they lie in, twice the tolerance a side.
+/// Edges by the cube of space that their middle lies in, twice the tolerance a side.
 struct Cells {
-    side: f64,
-    /// First vertex of a chain for each hash of a cube; cubes may share one.
+    tolerance: f64,
+    /// First link of a chain for each hash of a cube; cubes may share one.
     heads: Vec<u32>,
-    /// Vertices and the next of the chain.
+    /// Edges and the next of the chain.
     links: Vec<(u32, u32)>,
 }
 
-/// Vertices of a chain that are looked at: where more crowd within the tolerance, it is no rounding.
-const MOST_IN_CHAIN: usize = 64;
+/// Vertices of a set, and edges of a chain that are looked at: where more crowd within the tolerance, it is no rounding.
+const MOST_TOGETHER: usize = 64;
 
 impl Cells {
     fn new(expected: usize, tolerance: f64) -> Self {
-        Self {
-            side: 2.0 * tolerance,
-            heads: vec![NONE; (2 * expected).next_power_of_two()],
-            links: Vec::new(),
-        }
+        Self { tolerance, heads: vec![NONE; (2 * expected).next_power_of_two()], links: Vec::new() }
     }
 
-    fn head(&self, cube: [f64; 3]) -> usize {
-        hash(&Point3::from(cube.map(|c| c + 0.0))) as usize & (self.heads.len() - 1)
+    fn head(&self, place: Point3) -> usize {
+        let cube = place.coords.map(|c| (c / (2.0 * self.tolerance)).floor() + 0.0);
+        hash(&Point3::from(cube)) as usize & (self.heads.len() - 1)
     }
 
-    fn add(&mut self, places: &[Point3], v: u32) {
-        let head = self.head(places[v as usize].coords.map(|c| (c / self.side).floor()).into());
-        self.links.push((v, self.heads[head]));
+    fn add(&mut self, middle: &Point3, edge: u32) {
+        let head = self.head(*middle);
+        self.links.push((edge, self.heads[head]));
         self.heads[head] = (self.links.len() - 1) as u32;
     }
 
-    /// The nearest vertex within the tolerance, the first one added of several, that may be taken.
-    fn nearest(
-        &self,
-        places: &[Point3],
-        place: &Point3,
-        tolerance: f64,
-        barred: impl Fn(u32) -> bool,
-    ) -> Option<u32> {
-        let mut best: Option<(f64, u32)> = None;
+    /// Of the edges around a place the one that fits best, within the tolerance; of several the first one.
+    fn nearest(&self, place: &Point3, fit: impl Fn(u32) -> (f64, [u32; 2])) -> Option<(f64, [u32; 2])> {
+        let mut best: Option<(f64, u32, [u32; 2])> = None;
         // The cubes that hold the corners of a cube of the tolerance around the place.
         for corner in 0..8 {
-            let cube = [0, 1, 2].map(|axis| {
-                let off = if corner >> axis & 1 == 0 { -tolerance } else { tolerance };
-                ((place[axis] + off) / self.side).floor()
-            });
-            let mut link = self.heads[self.head(cube)];
-            for _ in 0..MOST_IN_CHAIN {
-                let Some(&(v, next)) = self.links.get(link as usize) else { break };
-                let apart = (places[v as usize] - place).norm();
-                if apart <= tolerance && best.is_none_or(|(d, b)| (apart, v) < (d, b)) && !barred(v) {
-                    best = Some((apart, v));
+            let off = [0, 1, 2].map(|i| if corner >> i & 1 == 0 { -self.tolerance } else { self.tolerance });
+            let mut link = self.heads[self.head(place + nalgebra::Vector3::from(off))];
+            for _ in 0..MOST_TOGETHER {
+                let Some(&(edge, next)) = self.links.get(link as usize) else { break };
+                let (apart, ends) = fit(edge);
+                if apart <= self.tolerance && best.is_none_or(|(d, e, _)| (apart, edge) < (d, e)) {
+                    best = Some((apart, edge, ends));
                 }
                 link = next;
             }
         }
-        best.map(|(_, v)| v)
+        best.map(|(apart, _, ends)| (apart, ends))
     }
 }
 
