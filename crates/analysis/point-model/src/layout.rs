@@ -96,11 +96,10 @@ mod tests {
         assert!((laid.signed_volume() - ball.signed_volume()).abs() < 1e-9);
         assert_eq!(laid.topology(), ball.topology());
         assert_eq!(laid_out(&laid).unwrap(), laid);
-        let apart = |m: &Mesh| {
-            let all =
-                m.triangles().iter().map(|t| f64::from(t.iter().max().unwrap() - t.iter().min().unwrap()));
-            all.sum::<f64>() / m.triangles().len() as f64
-        };
-        assert!(apart(&laid) < 0.5 * apart(&ball), "{} {}", apart(&laid), apart(&ball));
+        // Half of the triangles have their vertices within a few cells of memory.
+        let spans = laid.triangles().iter().map(|t| t.iter().max().unwrap() - t.iter().min().unwrap());
+        let mut spans: Vec<u32> = spans.collect();
+        spans.sort_unstable();
+        assert!(spans[spans.len() / 2] < 40, "{}", spans[spans.len() / 2]);
     }
 }

@@ -2,12 +2,12 @@
 //!
 //! An edge is sharp where its triangles' normals differ by more than an angle. Noise makes short ones: lines that end in the open
 //! surface before they are long enough, and small loops, are dropped. Where two lines meet in a vertex and go straight on it may
-//! move along them; where they turn by more than [`CORNER_DEG`], or one or more than two meet, it is a corner and stays.
+//! move along them; where they turn by more than [`CORNER_DEG`], or one or more than two meet, it is a corner and stays. Short rims stay as a whole.
 
 use biplane_geometry::Point3;
 use biplane_surface::Surface;
 
-use crate::half_edges::{HalfEdges, Hold, NONE, prev};
+use crate::half_edges::{HalfEdges, Hold, NONE, next, prev};
 
 /// A line that turns by more than this in a vertex has a corner there, degrees.
 const CORNER_DEG: f64 = 60.0;
@@ -31,6 +31,7 @@ pub(crate) fn mark(mesh: &mut HalfEdges, sharper_than_deg: f64, shortest_mm: f64
             break;
         }
     }
+    hold_small_rims(mesh, 3.0 * shortest_mm);
     let least = CORNER_DEG.to_radians().cos();
     let lines = Lines::of(mesh);
     for v in mesh.live() {
@@ -46,6 +47,33 @@ pub(crate) fn mark(mesh: &mut HalfEdges, sharper_than_deg: f64, shortest_mm: f64
         };
         if mesh.hold[v as usize] != Hold::Fixed {
             mesh.hold[v as usize] = hold;
+        }
+    }
+}
+
+/// Holds the vertices of rims that are shorter than a length: cracks and small holes, whose sides would cross if they moved.
+fn hold_small_rims(mesh: &mut HalfEdges, shorter_than_mm: f64) {
+    let mut passed = vec![false; mesh.from.len()];
+    let mut rim = Vec::new();
+    for first in 0..mesh.from.len() as u32 {
+        if !mesh.is_live(first) || mesh.twin[first as usize] != NONE {
+            continue;
+        }
+        rim.clear();
+        let mut half = first;
+        while !passed[half as usize] {
+            passed[half as usize] = true;
+            rim.push(half);
+            // Round the end of this rim's edge, to the next edge without a twin.
+            half = next(half);
+            while mesh.twin[half as usize] != NONE {
+                half = next(mesh.twin[half as usize]);
+            }
+        }
+        if rim.iter().map(|h| mesh.length(*h)).sum::<f64>() < shorter_than_mm {
+            for h in &rim {
+                mesh.hold[mesh.from[*h as usize] as usize] = Hold::Fixed;
+            }
         }
     }
 }

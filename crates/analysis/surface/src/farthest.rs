@@ -49,12 +49,10 @@ pub fn farthest(from: &Mesh, to: &Surface, tolerance_mm: f64) -> Farthest {
     let whole =
         |t: &[u32; 3]| Some([corners[t[0] as usize]?, corners[t[1] as usize]?, corners[t[2] as usize]?]);
     let triangles: Vec<[Corner; 3]> = from.triangles().iter().filter_map(whole).collect();
-    // Vertices may all lie on the other surface, and triangles be farthest from it in their middles.
-    for [a, b, c] in &triangles {
-        search.look(Point3::from((a.at.coords + b.at.coords + c.at.coords) / 3.0), a.near);
-    }
-    for triangle in triangles {
-        search.wait(triangle);
+    // Vertices may all lie on the other surface, and triangles be farthest from it in their middles: to know that first saves cuts.
+    let below: Vec<u32> = triangles.iter().map(|t| search.look_at_middle(t)).collect();
+    for (triangle, below) in triangles.into_iter().zip(below) {
+        search.wait(triangle, below);
     }
     while let Some(Waiting { most, number }) = search.waiting.pop() {
         if most <= search.enough() || search.triangles.len() >= MOST_CUTS {
@@ -66,8 +64,10 @@ pub fn farthest(from: &Mesh, to: &Surface, tolerance_mm: f64) -> Farthest {
         let longest = (0..3).fold(0, |best, k| if side(k) > side(best) { k } else { best });
         let [p, q, r] = [0, 1, 2].map(|k| triangle[(longest + k) % 3]);
         let middle = search.look(nalgebra::center(&p.at, &q.at), p.near);
-        search.wait([p, middle, r]);
-        search.wait([middle, q, r]);
+        for half in [[p, middle, r], [middle, q, r]] {
+            let below = search.look_at_middle(&half);
+            search.wait(half, below);
+        }
     }
     search.found.at_most_mm = search.found.at_most_mm.max(search.found.at_least_mm);
     search.found
@@ -131,9 +131,14 @@ impl Search<'_> {
         Corner { at, distance: closest.distance_mm, near: closest.triangle }
     }
 
-    /// Keeps a triangle if it may have a point that is too far.
-    fn wait(&mut self, triangle: [Corner; 3]) {
-        let most = self.upper_bound(&triangle);
+    /// The triangle of the other surface that is closest to the middle of one.
+    fn look_at_middle(&mut self, [a, b, c]: &[Corner; 3]) -> u32 {
+        self.look(Point3::from((a.at.coords + b.at.coords + c.at.coords) / 3.0), a.near).near
+    }
+
+    /// Keeps a triangle if it may have a point that is too far; `below` is the other surface's triangle below its middle.
+    fn wait(&mut self, triangle: [Corner; 3], below: u32) {
+        let most = self.upper_bound(&triangle, below);
         if most <= self.enough() {
             self.found.at_most_mm = self.found.at_most_mm.max(most);
         } else {
@@ -143,7 +148,7 @@ impl Search<'_> {
     }
 
     /// No point of the triangle is farther from the surface than this; not the best bound, where a quick one is good enough.
-    fn upper_bound(&mut self, triangle: &[Corner; 3]) -> f64 {
+    fn upper_bound(&mut self, triangle: &[Corner; 3], below: u32) -> f64 {
         let side = |k: usize| (triangle[k].at - triangle[(k + 1) % 3].at).norm();
         let sides = [side(0), side(1), side(2)];
         // A place is at most that much farther than a corner as it lies from that corner.
@@ -152,7 +157,7 @@ impl Search<'_> {
         if most <= self.enough() {
             return most;
         }
-        let below = self.overlay.upper_bound(self.to, &triangle.map(|c| c.at), triangle[0].near);
+        let below = self.overlay.upper_bound(self.to, &triangle.map(|c| c.at), below);
         below.map_or(most, |below| below.min(most))
     }
 }
