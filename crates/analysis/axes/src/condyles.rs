@@ -24,20 +24,34 @@ pub(crate) struct Condyles {
     pub half_widths: [f64; 2],
     /// Root mean square distance of the facets from the cylinders, mm.
     pub rms: f64,
-    /// Of the facets' area, how much lies within 1 mm of the cylinders.
-    pub share: f64,
 }
 
-/// The facet's arc, from the posterior direction towards the distal one, rad.
-const ARC: [f64; 2] = [-0.5, 1.05];
+/// The facet's arc on a bone, from the posterior direction towards the distal one, rad.
+pub(crate) const BONE: [f64; 2] = [-0.6, 0.8];
+/// The same on an implant, which goes on straight above the arc.
+pub(crate) const IMPLANT: [f64; 2] = [-0.1, 0.9];
 /// Over how much the ends of the arc are faded out, rad.
 const FADE: f64 = 0.17;
+/// How far a facet's normal may be turned about the axis against the cylinder's, rad.
+const TURNED: f64 = 0.35;
+/// The same at the start.
+const WIDE: f64 = 0.8;
+/// What is farther from the cylinders than this is none of them, of the width.
+const FARTHEST: f64 = 0.06;
+/// Weight of the radii's difference, of that of the facets.
+const ALIKE: f64 = 0.004;
 /// How far from square to the axis a facet's normal may be (sine).
 const LEAN: f64 = 0.4;
 
 /// Fits the axis to the surface behind and below. `x` is anterior, `y` proximal, `z` lateral, roughly; `middle` is a place between the
 /// condyles.
-pub(crate) fn fit(shape: &Shape, [x, y, z]: [Vector3; 3], middle: &Vector3, width: f64) -> Option<Condyles> {
+pub(crate) fn fit(
+    shape: &Shape,
+    [x, y, z]: [Vector3; 3],
+    middle: &Vector3,
+    width: f64,
+    arc: [f64; 2],
+) -> Option<Condyles> {
     let distal = shape.reach(&y).0;
     let near = |s: &&Sample| s.at.dot(&y) < distal + 0.62 * width;
     let behind: Vec<Sample> = shape.samples.iter().filter(near).copied().collect();
@@ -50,47 +64,53 @@ pub(crate) fn fit(shape: &Shape, [x, y, z]: [Vector3; 3], middle: &Vector3, widt
     let mut at = (medial.0 + lateral.0) / 2.0;
     at += axis * (middle - at).dot(&axis);
     let mut radii = [medial.1, lateral.1];
-    let mut scale = 0.06 * width;
-    let mut facets = Vec::new();
-    for round in 0..60 {
+    let mut facets: Vec<Facet> = Vec::new();
+    for round in 0..80 {
         let back = (-x + axis * x.dot(&axis)).try_normalize(1e-6)?;
-        let down = if axis.cross(&back).dot(&y) < 0.0 { axis.cross(&back) } else { -axis.cross(&back) };
+        let across = axis.cross(&back);
+        let down = if across.dot(&y) < 0.0 { across } else { -across };
+        // Wide at first, so that a start that is off does not choose what confirms it.
+        let narrow = f64::from(round.min(20)) / 20.0;
+        let turn = WIDE + (TURNED - WIDE) * narrow;
         facets.clear();
         for s in &behind {
             let d = s.at - at;
             let t = d.dot(&axis);
             let radial = d - axis * t;
             let far = radial.norm();
-            if far < 1e-6 || t.abs() < 0.1 * width {
+            let lean = s.normal.dot(&axis) / LEAN;
+            if far < 1e-6 || t.abs() < 0.1 * width || lean.abs() >= 1.0 {
                 continue;
             }
             let e = radial / far;
-            let lean = s.normal.dot(&axis) / LEAN;
-            let facing = s.normal.dot(&e);
-            if lean.abs() >= 1.0 || facing < 0.8 {
-                continue;
-            }
-            let angle = e.dot(&down).atan2(e.dot(&back));
-            let fade = |v: f64| (v / FADE).clamp(0.0, 1.0);
-            let arc = fade(angle - ARC[0]) * fade(ARC[1] - angle);
             let side = usize::from(t > 0.0);
             let r = far - radii[side];
-            let u = r / (4.7 * scale);
-            if arc <= 0.0 || u.abs() >= 1.0 {
+            if r.abs() > FARTHEST * width {
                 continue;
             }
-            let weight = s.area * arc * (1.0 - lean * lean).powi(2) * (1.0 - u * u).powi(2);
-            facets.push(Facet { t, e, r, side, weight });
+            // A flat wall that goes on where the arc ends faces another way than the axis says.
+            let [at_angle, facing] = [e, s.normal].map(|d| d.dot(&down).atan2(d.dot(&back)));
+            let turned = (facing - at_angle) / turn;
+            let fade = |v: f64| (v / FADE).clamp(0.0, 1.0);
+            let within = |angle: f64| fade(angle - arc[0]) * fade(arc[1] - angle);
+            let weight = s.area * within(facing) * within(at_angle) * (1.0 - lean * lean).powi(2);
+            if weight > 0.0 && turned.abs() < 1.0 {
+                facets.push(Facet { t, e, r, side, weight: weight * (1.0 - turned * turned).powi(2) });
+            }
+        }
+        // Tukey's weights, by the median distance: it does not shrink with what it leaves out.
+        let scale = (1.4826 * median_distance(&mut facets)).clamp(0.002 * width, 0.03 * width);
+        for f in &mut facets {
+            let u = f.r / (4.7 * scale);
+            f.weight *= (1.0 - u * u).max(0.0).powi(2);
         }
         let total: f64 = facets.iter().map(|f| f.weight).sum();
         let both = [0, 1].map(|side| facets.iter().filter(|f| f.side == side).map(|f| f.weight).sum::<f64>());
-        if both.iter().any(|w| *w < 1e-3 * width * width) {
+        if both.iter().any(|w| *w < 2e-3 * width * width) {
             return None;
         }
-        let [u, v] = {
-            let u = square_to(&axis);
-            [u, axis.cross(&u)]
-        };
+        let u = square_to(&axis);
+        let v = axis.cross(&u);
         let mut normal = SMatrix::<f64, 6, 6>::zeros();
         let mut right = SVector::<f64, 6>::zeros();
         for f in &facets {
@@ -100,13 +120,15 @@ pub(crate) fn fit(shape: &Shape, [x, y, z]: [Vector3; 3], middle: &Vector3, widt
             normal += j * j.transpose() * f.weight;
             right -= j * (f.r * f.weight);
         }
+        // The radii are alike unless the facets say otherwise.
+        let alike = SVector::<f64, 6>::from([0.0, 0.0, 0.0, 0.0, 1.0, -1.0]);
+        normal += alike * alike.transpose() * (ALIKE * total);
+        right -= alike * ((radii[0] - radii[1]) * ALIKE * total);
         let step = normal.cholesky()?.solve(&right);
         at += u * step[0] + v * step[1];
         axis = (axis + u * step[2] + v * step[3]).normalize();
         radii = [radii[0] + step[4], radii[1] + step[5]];
-        let rms = (facets.iter().map(|f| f.weight * f.r * f.r).sum::<f64>() / total).sqrt();
-        scale = (0.7 * scale).max((1.5 * rms).max(0.004 * width));
-        if round > 20 && step.norm() < 1e-10 {
+        if round > 25 && step.norm() < 1e-10 {
             break;
         }
     }
@@ -115,7 +137,6 @@ pub(crate) fn fit(shape: &Shape, [x, y, z]: [Vector3; 3], middle: &Vector3, widt
     }
     let total: f64 = facets.iter().map(|f| f.weight).sum();
     let rms = (facets.iter().map(|f| f.weight * f.r * f.r).sum::<f64>() / total).sqrt();
-    let near: f64 = facets.iter().filter(|f| f.r.abs() < 1.0).map(|f| f.weight).sum();
     let spans = [0, 1].map(|side| {
         let of = || facets.iter().filter(move |f| f.side == side);
         let weight: f64 = of().map(|f| f.weight).sum();
@@ -129,7 +150,6 @@ pub(crate) fn fit(shape: &Shape, [x, y, z]: [Vector3; 3], middle: &Vector3, widt
         radii,
         half_widths: spans.map(|(_, half)| half),
         rms,
-        share: near / total,
     })
 }
 
@@ -144,6 +164,18 @@ struct Facet {
     /// 0 medial, 1 lateral.
     side: usize,
     weight: f64,
+}
+
+/// The distance beyond which half of the weight lies; sorts the facets by distance.
+fn median_distance(facets: &mut [Facet]) -> f64 {
+    facets.sort_by(|a, b| a.r.abs().total_cmp(&b.r.abs()));
+    let half = facets.iter().map(|f| f.weight).sum::<f64>() / 2.0;
+    let mut sum = 0.0;
+    let beyond = facets.iter().find(|f| {
+        sum += f.weight;
+        sum >= half
+    });
+    beyond.map_or(0.0, |f| f.r.abs())
 }
 
 /// Centre and radius of one condyle's back.

@@ -24,7 +24,7 @@ pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
     let y = shaft.direction;
     let ends = Ends::of(shape, &y).ok_or("no section through the condyles was found")?;
     let (x, z) = ends.senses(shape, &shaft, &mut warnings)?;
-    let fitted = condyles::fit(shape, [x, y, z], &ends.middle, ends.width)
+    let fitted = condyles::fit(shape, [x, y, z], &ends.middle, ends.width, condyles::BONE)
         .ok_or("no two round condyles were found at the end away from the shaft")?;
     judge(&shaft, &fitted, head.as_ref(), ends.width, &mut warnings);
     if let Some(said) = other_side(shape, &shaft, &fitted, &y, ends.width) {
@@ -109,8 +109,7 @@ impl Ends {
             .collect();
         let width_of = |s: &Section| {
             let (d, _) = s.principal();
-            let (back, front) = s.reach(&d);
-            front - back
+            s.width(&d)
         };
         let width = all.iter().map(width_of).fold(0.0, f64::max);
         let sections: Vec<Section> = [0.14, 0.18, 0.22, 0.26, 0.30, 0.34, 0.38]

@@ -10,8 +10,6 @@ use crate::shape::Shape;
 pub(crate) struct Head {
     pub centre: Vector3,
     pub radius: f64,
-    /// Root mean square distance of the surface from it, mm.
-    pub rms: f64,
 }
 
 /// Looks for the head among what is above `floor` along `up`, on the side of the place that is farthest from the shaft's line. None where
@@ -72,5 +70,5 @@ pub(crate) fn fit(shape: &Shape, up: &Vector3, on_shaft: &Vector3, floor: f64) -
             break;
         }
     }
-    ((15.0..35.0).contains(&radius) && rms < 1.5).then_some(Head { centre, radius, rms })
+    ((15.0..35.0).contains(&radius) && rms < 1.5).then_some(Head { centre, radius })
 }

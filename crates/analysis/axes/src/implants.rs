@@ -23,22 +23,19 @@ use crate::symmetry::{Mirror, Places};
 /// Above this a body is hardly its own mirror image: misfit over size.
 const ASYMMETRIC: f64 = 0.018;
 
-/// Directions to start from: axes, edges and corners of the own frame, one of each pair.
+/// Directions over a half sphere, spread evenly (a Fibonacci lattice).
+fn half_sphere(count: i32) -> impl Iterator<Item = Vector3> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    (0..count).map(move |k| {
+        let z = (f64::from(k) + 0.5) / f64::from(count);
+        let (r, a) = ((1.0 - z * z).sqrt(), golden * f64::from(k));
+        Vector3::new(r * a.cos(), r * a.sin(), z)
+    })
+}
+
+/// Directions to start the search for a mirror plane from: the own axes, and others all around.
 fn starts() -> Vec<Vector3> {
-    let mut all: Vec<Vector3> = Vec::new();
-    let steps = [1.0, 0.0, -1.0];
-    for x in steps {
-        for y in steps {
-            for z in steps {
-                if let Some(d) = Vector3::new(x, y, z).try_normalize(0.5)
-                    && all.iter().all(|a| a.dot(&d) > -0.999)
-                {
-                    all.push(d);
-                }
-            }
-        }
-    }
-    all
+    [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().chain(half_sphere(150)).collect()
 }
 
 pub(crate) fn propose_femoral(shape: &Shape) -> Result<Proposal, String> {
@@ -76,8 +73,8 @@ pub(crate) fn propose_femoral(shape: &Shape) -> Result<Proposal, String> {
     let (low, high) = shape.reach(&z);
     let width = high - low;
     let middle = z * (mirror.height * z.dot(&mirror.normal));
-    let fitted =
-        condyles::fit(shape, [x, y, z], &middle, width).ok_or("no two round condyles were found behind")?;
+    let fitted = condyles::fit(shape, [x, y, z], &middle, width, condyles::IMPLANT)
+        .ok_or("no two round condyles were found behind")?;
     if fitted.rms > 0.012 * width {
         warnings.push(format!("the condyles are no good cylinders: {:.2} mm rms", fitted.rms));
     }
@@ -347,14 +344,7 @@ fn plate_normal(shape: &Shape) -> Option<Vector3> {
             })
             .sum()
     };
-    // Directions over a half sphere, spread evenly.
-    const DIRECTIONS: i32 = 400;
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    let all = (0..DIRECTIONS).map(|k| {
-        let z = (f64::from(k) + 0.5) / f64::from(DIRECTIONS);
-        let (r, a) = ((1.0 - z * z).sqrt(), golden * f64::from(k));
-        Vector3::new(r * a.cos(), r * a.sin(), z)
-    });
+    let all = half_sphere(400);
     let coarse: Vec<(f64, Vector3)> = all.map(|d| (facing(&d, 0.02), d)).collect();
     let mut normal = coarse.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?.1;
     let mut range = 0.02;
@@ -395,8 +385,7 @@ fn plate(shape: &Shape, flat: &Vector3) -> Result<(Vector3, PlateOf), String> {
         (0..LEVELS).filter_map(|k| section(shape, flat, at(k)).map(|s| (at(k), s))).collect();
     let wide = |s: &Section| {
         let (d, _) = s.principal();
-        let (a, b) = s.reach(&d);
-        b - a
+        s.width(&d)
     };
     // By its extent and not its area: of an open mesh the area says nothing.
     let widest = sections.iter().map(|(_, s)| wide(s)).fold(0.0, f64::max);

@@ -24,61 +24,85 @@ pub(crate) struct Section {
 
 /// The section at right angles to the unit vector `normal` at the height `height` along it; none where nothing is cut.
 pub(crate) fn section(shape: &Shape, normal: &Vector3, height: f64) -> Option<Section> {
-    let u = square_to(normal);
-    let v = normal.cross(&u);
-    let mut segments: Vec<[Vector3; 2]> = Vec::new();
+    sections(shape, normal, &[height]).pop().flatten()
+}
+
+/// The sections at ascending heights, in one pass over the triangles.
+pub(crate) fn sections(shape: &Shape, normal: &Vector3, levels: &[f64]) -> Vec<Option<Section>> {
+    let heights: Vec<f64> = shape.vertices.iter().map(|v| v.dot(normal)).collect();
+    let mut outlines: Vec<Vec<[Vector3; 2]>> = vec![Vec::new(); levels.len()];
     for t in &shape.triangles {
-        let corners = t.map(|i| shape.vertices[i as usize]);
-        let heights = corners.map(|c| c.dot(normal) - height);
-        let above = heights.map(|h| h >= 0.0);
-        if above == [true; 3] || above == [false; 3] {
-            continue;
-        }
-        let (mut from, mut to) = (None, None);
-        for k in 0..3 {
-            let l = (k + 1) % 3;
-            if above[k] != above[l] {
-                let s = heights[k] / (heights[k] - heights[l]);
-                let at = corners[k] + (corners[l] - corners[k]) * s;
-                // Seen from above the outline runs counter-clockwise around the body.
-                if above[k] { from = Some(at) } else { to = Some(at) }
+        let h = t.map(|i| heights[i as usize]);
+        let (low, high) = (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]));
+        let first = levels.partition_point(|l| *l <= low);
+        for (level, outline) in levels.iter().zip(&mut outlines).skip(first) {
+            if *level > high {
+                break;
             }
+            let corners = t.map(|i| shape.vertices[i as usize]);
+            outline.extend(segment(&corners, h.map(|h| h - level)));
         }
-        if let (Some(from), Some(to)) = (from, to) {
-            segments.push([from, to]);
+    }
+    outlines.into_iter().map(|segments| Section::of(segments, normal)).collect()
+}
+
+/// Where a plane cuts a triangle whose corners lie at `heights` over it.
+fn segment(corners: &[Vector3; 3], heights: [f64; 3]) -> Option<[Vector3; 2]> {
+    let above = heights.map(|h| h >= 0.0);
+    let (mut from, mut to) = (None, None);
+    for k in 0..3 {
+        let l = (k + 1) % 3;
+        if above[k] != above[l] {
+            let s = heights[k] / (heights[k] - heights[l]);
+            let at = corners[k] + (corners[l] - corners[k]) * s;
+            // One sense around the body for all triangles of it.
+            if above[k] { from = Some(at) } else { to = Some(at) }
         }
     }
-    let count = segments.len();
-    if count < 3 {
-        return None;
-    }
-    let middle = segments.iter().map(|[p, q]| (p + q) / 2.0).sum::<Vector3>() / count as f64;
-    let (mut twice, mut first, mut second, mut perimeter) = (0.0, Vector2::zeros(), Matrix2::zeros(), 0.0);
-    for [p, q] in &segments {
-        perimeter += (q - p).norm();
-        let [p, q] = [p - middle, q - middle].map(|d| Vector2::new(d.dot(&u), d.dot(&v)));
-        let cross = p.x * q.y - p.y * q.x;
-        twice += cross;
-        first += (p + q) * (cross / 6.0);
-        let s = p + q;
-        second += (p * p.transpose() + q * q.transpose() + s * s.transpose()) * (cross / 24.0);
-    }
-    let area = twice / 2.0;
-    if area.abs() < 1e-6 * perimeter * perimeter {
-        return None;
-    }
-    let mean = first / area;
-    Some(Section {
-        area: area.abs(),
-        perimeter,
-        centroid: middle + u * mean.x + v * mean.y,
-        second: second / area - mean * mean.transpose(),
-        across: [u, v],
-        segments,
-    })
+    Some([from?, to?])
 }
 
 impl Section {
+    fn of(segments: Vec<[Vector3; 2]>, normal: &Vector3) -> Option<Self> {
+        let count = segments.len();
+        if count < 3 {
+            return None;
+        }
+        let u = square_to(normal);
+        let v = normal.cross(&u);
+        let middle = segments.iter().map(|[p, q]| (p + q) / 2.0).sum::<Vector3>() / count as f64;
+        let (mut twice, mut first, mut second, mut perimeter) =
+            (0.0, Vector2::zeros(), Matrix2::zeros(), 0.0);
+        for [p, q] in &segments {
+            perimeter += (q - p).norm();
+            let [p, q] = [p - middle, q - middle].map(|d| Vector2::new(d.dot(&u), d.dot(&v)));
+            let cross = p.x * q.y - p.y * q.x;
+            twice += cross;
+            first += (p + q) * (cross / 6.0);
+            let s = p + q;
+            second += (p * p.transpose() + q * q.transpose() + s * s.transpose()) * (cross / 24.0);
+        }
+        let area: f64 = twice / 2.0;
+        if area.abs() < 1e-6 * perimeter * perimeter {
+            return None;
+        }
+        let mean = first / area;
+        Some(Self {
+            area: area.abs(),
+            perimeter,
+            centroid: middle + u * mean.x + v * mean.y,
+            second: second / area - mean * mean.transpose(),
+            across: [u, v],
+            segments,
+        })
+    }
+
+    /// From its rearmost to its foremost place along a direction, mm.
+    pub fn width(&self, direction: &Vector3) -> f64 {
+        let (back, front) = self.reach(direction);
+        front - back
+    }
+
     /// Its longest direction (unit), and the standard deviations of its area along it and across it, mm.
     pub fn principal(&self) -> (Vector3, [f64; 2]) {
         let eigen = SymmetricEigen::new(self.second);

@@ -2,7 +2,8 @@
 
 use biplane_geometry::Vector3;
 
-use crate::section::{Section, section};
+use crate::frame::square_to;
+use crate::section::{Section, sections};
 use crate::shape::Shape;
 
 /// A shaft's axis.
@@ -31,6 +32,8 @@ impl Shaft {
 
 /// A body longer than this times its width has both of its ends.
 const WHOLE: f64 = 2.6;
+/// Where a section is this much larger than the smallest one, the shaft ends.
+const WIDER: f64 = 1.4;
 /// Sections along the body.
 const LEVELS: usize = 60;
 
@@ -41,30 +44,32 @@ pub(crate) fn whole_line(shape: &Shape) -> Option<Shaft> {
     if size.x < WHOLE * size.y.max(size.z) {
         return None;
     }
-    let mut shaft = line(shape, Vector3::x(), |shape, direction| {
-        let (low, high) = shape.reach(direction);
-        let at = |s: f64| low + s * (high - low);
-        let sections = (0..LEVELS).filter_map(|k| {
-            let h = at(0.3 + 0.4 * k as f64 / (LEVELS - 1) as f64);
-            section(shape, direction, h).map(|s| (h, s))
-        });
-        sections.collect()
-    })?;
+    let mut shaft = line(shape, Vector3::x(), low.x + 0.3 * size.x, low.x + 0.7 * size.x)?;
     shaft.whole = true;
     shaft.margin = 1.0;
     Some(shaft)
 }
 
+/// Sections at even steps from one height to another, lowest first.
+fn levels(shape: &Shape, direction: &Vector3, from: f64, to: f64) -> Vec<(f64, Section)> {
+    let heights: Vec<f64> =
+        (0..LEVELS).map(|k| from + (to - from) * (k as f64 + 0.5) / LEVELS as f64).collect();
+    let found = sections(shape, direction, &heights);
+    heights.into_iter().zip(found).filter_map(|(h, s)| Some((h, s?))).collect()
+}
+
 /// The shaft of a body that has one of its ends only, the other being cut through the shaft. `towards` is where the shaft's end should
 /// lie, if that is known.
 pub(crate) fn cut(shape: &Shape, towards: Option<Vector3>) -> Option<Shaft> {
+    let allowed = |d: &Vector3| towards.is_none_or(|t| t.dot(d) > 0.55);
     let mut scores: Vec<(f64, Vector3)> = Vec::new();
     let steps = [-1.0, 0.0, 1.0];
     for x in steps {
         for y in steps {
             for z in steps {
-                let Some(d) = Vector3::new(x, y, z).try_normalize(0.5) else { continue };
-                if towards.is_none_or(|t| t.dot(&d) > 0.55) {
+                if let Some(d) = Vector3::new(x, y, z).try_normalize(0.5)
+                    && allowed(&d)
+                {
                     scores.push((likeness(shape, &d), d));
                 }
             }
@@ -72,65 +77,100 @@ pub(crate) fn cut(shape: &Shape, towards: Option<Vector3>) -> Option<Shaft> {
     }
     scores.extend(towards.map(|t| (likeness(shape, &t), t)));
     scores.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let &(best, direction) = scores.first()?;
-    let next = scores.iter().find(|(_, d)| d.dot(&direction) < 0.6).map_or(0.0, |(s, _)| *s);
-    let mut shaft = line(shape, direction, of_cut)?;
-    shaft.margin = if towards.is_some() { 1.0 } else { (best - next).max(0.0) };
+    // The best of different directions, each made better by small turns.
+    let mut best: Vec<(f64, Vector3)> = Vec::new();
+    for (score, d) in &scores {
+        if best.len() < 4 && best.iter().all(|(_, b)| b.dot(d) < 0.9) {
+            best.push(climb(shape, (*score, *d), &allowed));
+        }
+    }
+    best.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let &(score, direction) = best.first()?;
+    let next = best.iter().chain(&scores).filter(|(_, d)| d.dot(&direction) < 0.7);
+    let next = next.map(|(s, _)| *s).fold(0.0, f64::max);
+    if score < 0.05 {
+        return None;
+    }
+    let (from, to) = of_cut(shape, &direction)?;
+    let mut shaft = line(shape, direction, from, to)?;
+    shaft.margin = if towards.is_some() { 1.0 } else { score - next };
     Some(shaft)
+}
+
+/// Turns a direction in ever smaller steps to where the likeness is largest.
+fn climb(shape: &Shape, start: (f64, Vector3), allowed: &impl Fn(&Vector3) -> bool) -> (f64, Vector3) {
+    let mut best = start;
+    let mut step = 0.2;
+    while step > 0.02 {
+        let u = square_to(&best.1);
+        let v = best.1.cross(&u);
+        let around = [u, -u, v, -v].map(|d| (best.1 + d * step).normalize());
+        let next = around
+            .into_iter()
+            .filter(|d| allowed(d))
+            .map(|d| (likeness(shape, &d), d))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        match next {
+            Some(next) if next.0 > best.0 => best = next,
+            _ => step /= 2.0,
+        }
+    }
+    best
 }
 
 /// How much the end in a direction looks like one cut through a shaft: its sections are alike, round, and much smaller than those
 /// elsewhere. 0 to 1.
 fn likeness(shape: &Shape, d: &Vector3) -> f64 {
     let (low, high) = shape.reach(d);
-    let middle = (1..20).filter_map(|k| section(shape, d, low + (high - low) * f64::from(k) / 20.0));
-    let largest = middle.map(|s| s.area).fold(0.0, f64::max);
+    let heights: Vec<f64> = (1..16).map(|k| low + (high - low) * f64::from(k) / 16.0).collect();
+    let largest = sections(shape, d, &heights).into_iter().flatten().map(|s| s.area).fold(0.0, f64::max);
     let unit = largest.sqrt();
-    let at = |s: f64| section(shape, d, high - s * unit);
-    let (Some(near), Some(far)) = (at(0.1), at(0.25)) else { return 0.0 };
+    let near_end = sections(shape, d, &[high - 0.25 * unit, high - 0.1 * unit]);
+    let [Some(far), Some(near)] = near_end.as_slice() else { return 0.0 };
     let alike = (near.area / far.area).min(far.area / near.area);
     alike * alike * far.roundness().min(1.0) * (1.0 - far.area / largest).max(0.0)
 }
 
-/// Sections of the shaft of a cut body from near its end up to where it widens.
-fn of_cut(shape: &Shape, direction: &Vector3) -> Vec<(f64, Section)> {
+/// From where to where the shaft of a cut body reaches along a direction: from where it widens to near its end.
+fn of_cut(shape: &Shape, direction: &Vector3) -> Option<(f64, f64)> {
     let (low, high) = shape.reach(direction);
-    let sections: Vec<(f64, Section)> = (1..LEVELS)
-        .filter_map(|k| {
-            let h = high - (high - low) * k as f64 / LEVELS as f64;
-            section(shape, direction, h).map(|s| (h, s))
-        })
-        .collect();
-    let Some(first) =
-        sections.iter().map(|(_, s)| s.area).fold(None, |m: Option<f64>, a| Some(m.map_or(a, |m| m.max(a))))
-    else {
-        return sections;
-    };
-    // The cap of the cut is left out: what is nearer to the end than a tenth of the body's width.
-    let cap = high - 0.08 * first.sqrt();
-    let shaft: Vec<(f64, Section)> = sections.into_iter().filter(|(h, _)| *h < cap).collect();
-    let near_end = shaft.iter().take(LEVELS / 3).map(|(_, s)| s.area).fold(f64::INFINITY, f64::min);
-    shaft.into_iter().take_while(|(_, s)| s.area < 1.35 * near_end).collect()
+    let mut all = levels(shape, direction, low, high);
+    all.reverse();
+    let largest = all.iter().map(|(_, s)| s.area).fold(0.0, f64::max);
+    // The cap of the cut is left out: what is nearer to the end than a small part of the body's width.
+    let cap = high - 0.08 * largest.sqrt();
+    all.retain(|(h, _)| *h < cap);
+    let smallest = all.iter().take(LEVELS / 3).map(|(_, s)| s.area).fold(f64::INFINITY, f64::min);
+    let widening = all.iter().position(|(_, s)| s.area > WIDER * smallest).unwrap_or(all.len());
+    let (to, _) = all.first()?;
+    let (from, _) = all.get(widening.clamp(5, all.len().max(6) - 1))?;
+    Some((*from, *to))
 }
 
-/// The line through the centroids of sections at right angles to itself.
-fn line(
-    shape: &Shape,
-    start: Vector3,
-    sections: impl Fn(&Shape, &Vector3) -> Vec<(f64, Section)>,
-) -> Option<Shaft> {
+/// The line through the centroids of sections at right angles to itself, over the part of the body that lies between two heights along
+/// the direction it starts with.
+fn line(shape: &Shape, start: Vector3, from: f64, to: f64) -> Option<Shaft> {
     let mut direction = start;
+    let mut mean = levels(shape, &start, from, to).iter().map(|(_, s)| s.centroid).sum::<Vector3>();
+    mean /= levels(shape, &start, from, to).len().max(1) as f64;
+    let half = (to - from) / 2.0;
     let mut found = None;
-    for _ in 0..12 {
-        let cuts = sections(shape, &direction);
+    for _ in 0..15 {
+        let at = mean.dot(&direction);
+        let mut cuts = levels(shape, &direction, at - half, at + half);
+        // Where the cut's plane leans, sections near it are corners of it.
+        let mut areas: Vec<f64> = cuts.iter().map(|(_, s)| s.area).collect();
+        areas.sort_by(f64::total_cmp);
+        let middle = areas.get(areas.len() / 2).copied().unwrap_or(0.0);
+        cuts.retain(|(_, s)| s.area > 0.8 * middle);
         if cuts.len() < 3 {
             return found;
         }
         let count = cuts.len() as f64;
-        let mean = cuts.iter().map(|(_, s)| s.centroid).sum::<Vector3>() / count;
+        let centre = cuts.iter().map(|(_, s)| s.centroid).sum::<Vector3>() / count;
         let (mut slope, mut weight) = (Vector3::zeros(), 0.0);
         for (_, s) in &cuts {
-            let d = s.centroid - mean;
+            let d = s.centroid - centre;
             let h = d.dot(&direction);
             slope += d * h;
             weight += h * h;
@@ -138,22 +178,24 @@ fn line(
         let next = (slope / weight).try_normalize(1e-9)?;
         let moved = (next - direction).norm();
         direction = next;
-        let along = |s: &Section| (s.centroid - mean).dot(&direction);
+        let along = |s: &Section| (s.centroid - centre).dot(&direction);
         let (low, high) = cuts
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, s)| (l.min(along(s)), h.max(along(s))));
         let off = |s: &Section| {
-            let d = s.centroid - mean;
+            let d = s.centroid - centre;
             (d - direction * d.dot(&direction)).norm_squared()
         };
         found = Some(Shaft {
             direction,
-            ends: [mean + direction * low, mean + direction * high],
+            ends: [centre + direction * low, centre + direction * high],
             radius: cuts.iter().map(|(_, s)| (s.area / std::f64::consts::PI).sqrt()).sum::<f64>() / count,
             rms: (cuts.iter().map(|(_, s)| off(s)).sum::<f64>() / count).sqrt(),
             margin: 0.0,
             whole: false,
         });
+        // The part stays where it is: about the place of the line that is nearest to its first middle.
+        mean = centre + direction * (mean - centre).dot(&direction);
         if moved < 1e-10 {
             break;
         }

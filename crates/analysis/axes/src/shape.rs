@@ -103,7 +103,6 @@ impl Shape {
         let v = self.turn * own;
         if self.mirrored { mirror(&v) } else { v }
     }
-
     /// What was found, in model coordinates. The axes of a mirrored body: x and y are mirrored, z points to the right again.
     pub fn placed(&self, found: Found, body: BodyKind, side: Side) -> BodyAxes {
         let [x, y, z] = found.frame.axes.map(|a| self.model_direction(&a));

@@ -124,13 +124,17 @@ impl Places {
             })
             .collect();
         first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        first.truncate(4);
-        first.into_iter().map(|m| self.refined(m, square)).min_by(|a, b| a.cost.total_cmp(&b.cost))
+        first.truncate(10);
+        let mut rough: Vec<Mirror> = first.into_iter().map(|m| self.refined(m, square, 5, 20)).collect();
+        rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        rough.truncate(2);
+        rough.into_iter().map(|m| self.refined(m, square, 1, 60)).min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    fn refined(&self, mut m: Mirror, square: Option<&Vector3>) -> Mirror {
+    /// With every `stride`th place, in at most `rounds` steps.
+    fn refined(&self, mut m: Mirror, square: Option<&Vector3>, stride: usize, rounds: usize) -> Mirror {
         let mut scale = self.size / 60.0;
-        for _ in 0..50 {
+        for _ in 0..rounds {
             let (u, v) = match square {
                 Some(s) => (s.cross(&m.normal), Vector3::zeros()),
                 None => {
@@ -140,7 +144,7 @@ impl Places {
             };
             let (mut normal, mut right) = (Matrix3::zeros(), Unknowns::zeros());
             let (mut total, mut squares) = (0.0, 0.0);
-            for (p, misfit) in self.misfits(&m, 1) {
+            for (p, misfit) in self.misfits(&m, stride) {
                 let Some((r, n)) = misfit else { continue };
                 let t = r / (4.7 * scale);
                 if t.abs() >= 1.0 {
@@ -166,7 +170,7 @@ impl Places {
                 break;
             }
         }
-        m.cost = self.cost(&m, 1);
+        m.cost = self.cost(&m, stride);
         m
     }
 }

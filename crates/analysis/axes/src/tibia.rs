@@ -17,25 +17,33 @@ use crate::shape::Shape;
 
 pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
     let mut warnings = Vec::new();
-    let (shaft, up) = stand(shape)?;
+    let (shaft, mut up) = stand(shape)?;
     if shaft.margin < 0.15 {
         warnings.push(
             "the shape hardly tells which end is cut through the shaft; look at the axes, give landmarks, or set frame = \"lps\""
                 .to_owned(),
         );
     }
-    if shaft.length() < 1.2 * shaft.radius {
+    let found = || "no plateau was found at the end away from the shaft";
+    let mut top = Top::of(shape, &up).ok_or_else(found)?;
+    let short = !shaft.whole && shaft.length() < 1.2 * shaft.radius;
+    if short {
+        // A short stump's own direction says little: the line from its end to the middle of the plateau is longer.
         warnings.push(format!(
-            "only {:.0} mm of the shaft are there, at a radius of {:.0} mm: its direction is uncertain; give ankle_centre, or \
-             shaft_proximal and shaft_distal",
+            "only {:.0} mm of the shaft are there, at a radius of {:.0} mm: y runs from its end to the middle of the plateau, and is \
+             uncertain; give ankle_centre, or shaft_proximal and shaft_distal",
             shaft.length(),
             shaft.radius
         ));
+        for _ in 0..10 {
+            let to_top = up * ((top.height - top.middle.dot(&up)).max(0.0));
+            up = (top.middle + to_top - shaft.ends[1]).try_normalize(1e-6).ok_or_else(found)?;
+            top = Top::of(shape, &up).ok_or_else(found)?;
+        }
     }
-    let top = Top::of(shape, &up).ok_or("no plateau was found at the end away from the shaft")?;
     let x = top.front(shape, &shaft, &up, &mut warnings)?;
     let z = x.cross(&up);
-    let plane = plateau(shape, &up, &top).ok_or("no plateau was found at the end away from the shaft")?;
+    let plane = plateau(shape, &up, &top).ok_or_else(found)?;
     let slope = up.dot(&plane.normal).clamp(-1.0, 1.0).acos().to_degrees();
     if slope > 20.0 {
         warnings
@@ -57,7 +65,9 @@ pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
         ("plateau_centre", centre),
     ];
     let [near, far] = shaft.ends;
-    marks.push(("shaft_proximal", near));
+    if !short {
+        marks.push(("shaft_proximal", near));
+    }
     marks.push(("shaft_distal", far));
     let mut features = vec![
         figures::line("shaft", &far, &near),
@@ -139,13 +149,7 @@ impl Top {
         }
         let across = across.try_normalize(1e-9)?;
         let middle = sections.iter().map(|s| s.centroid).sum::<Vector3>() / sections.len() as f64;
-        let width = sections
-            .iter()
-            .map(|s| {
-                let (a, b) = s.reach(&across);
-                b - a
-            })
-            .fold(0.0, f64::max);
+        let width = sections.iter().map(|s| s.width(&across)).fold(0.0, f64::max);
         Some(Self { width, across, middle, height, sections })
     }
 
