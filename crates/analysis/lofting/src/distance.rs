@@ -9,7 +9,7 @@ use std::rc::Rc;
 use biplane_artifact::SurfaceReport;
 use biplane_geometry::Mesh;
 
-use crate::dome::{Dome, Profile, Trend};
+use crate::dome::{Close, Dome, Profile, Trend};
 use crate::finish;
 use crate::gap::{Blend, Field};
 use crate::layer::{Grid, Joined, Layer, Run};
@@ -23,7 +23,7 @@ use crate::{LoftError, LoftParams};
 /// A cell's side in distances of neighbouring points of a contour.
 const CELL_POINTS: f64 = 2.0;
 /// Cells across a contour of usual width, at least and at most.
-const CELLS_ACROSS: [f64; 2] = [25.0, 150.0];
+const CELLS_ACROSS: [f64; 2] = [16.0, 150.0];
 /// Distance of levels in cells, at most.
 const LEVEL_CELLS: f64 = 1.25;
 /// Nodes of a level and of all levels, at most.
@@ -31,6 +31,8 @@ const MOST_NODES: f64 = 1e6;
 const MOST_NODES_IN_ALL: f64 = 4e8;
 /// Levels between two slices, at most.
 const MOST_LEVELS: f64 = 64.0;
+/// Nodes by which the surface between two slices may reach beyond both.
+const BULGE: usize = 4;
 /// Nodes around the contours' box.
 const MARGIN: f64 = 4.0;
 
@@ -58,10 +60,11 @@ pub(crate) fn surface(stack: &Stack, params: &LoftParams) -> Result<Made, LoftEr
     let links = Links::of(&layers, params.reach);
     let mut lofter = Lofter::new(&grid, &layers, &links, params.caps);
     let mesher = lofter.run();
+    let rims = mesher.rims();
     let (mut vertices, triangles) = (mesher.vertices, mesher.triangles);
     let unmoved = vertices.iter().map(|v| stack.scanner((*v).into())).collect();
     let volume = finish::volume(&vertices, &triangles);
-    finish::finish(&mut vertices, &triangles, params.smoothing_mm, grid.cell);
+    finish::finish(&mut vertices, &triangles, &rims, params.smoothing_mm, grid.cell);
     let report = SurfaceReport {
         method: "distance".to_owned(),
         contours: layers.iter().flat_map(|l| &l.of_contour).filter(|c| **c != (None, None)).count(),
@@ -92,7 +95,7 @@ fn grid(stack: &Stack, cell_mm: f64, warnings: &mut Vec<String>) -> Grid {
     let mut widths: Vec<(f64, f64)> = contours()
         .map(|c| {
             let box_side = (c.high[0] - c.low[0]).max(c.high[1] - c.low[1]);
-            ((4.0 * c.area.abs() / c.perimeter).max(0.1 * box_side), c.perimeter)
+            ((4.0 * c.area.abs() / c.perimeter).max(0.25 * box_side), c.perimeter)
         })
         .collect();
     widths.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -258,10 +261,9 @@ impl<'a> Lofter<'a> {
         let grid = self.grid;
         let root = |node: usize, heights: [f64; 2]| field.root(grid, node, heights);
         let mut values = Vec::new();
-        let inner = [[1, 1], [grid.size[0] - 2, grid.size[1] - 2]];
         for level in 1..levels {
             let height = low + (high - low) * level as f64 / levels as f64;
-            field.fill(grid, height, inner, &mut values);
+            field.fill(grid, height, &mut values);
             let mut bits = vec![0_u64; grid.words * grid.size[1]];
             for j in 1..grid.size[1] - 1 {
                 let row = &values[j * grid.size[0]..(j + 1) * grid.size[0]];
@@ -272,6 +274,7 @@ impl<'a> Lofter<'a> {
             mesher.rise(Level { bits, height }, |node| values[node], root);
         }
         mesher.rise(Level { bits, height: high }, |node| plane.map_or(1.0, |p| p.values[node]), root);
+        mesher.mark([low, high], |place, height| field.has_rim_at(place, height));
     }
 
     /// Fills a gap between two layers.
@@ -346,7 +349,20 @@ impl<'a> Lofter<'a> {
             });
         drop(near);
         let planes = numbers.map(|k| k.map(|k| if known { self.plane(k) } else { self.complete(k) }));
-        Blend::new(planes, self.heights(gap), None)
+        Blend::new(planes, self.heights(gap), None, self.bounds(gap))
+    }
+
+    /// The box of nodes that the surface between two layers may reach.
+    fn bounds(&self, gap: usize) -> [[usize; 2]; 2] {
+        let boxes = self.layers[gap..gap + 2].iter().filter_map(|l| l.bounds);
+        let [low, high] = boxes
+            .reduce(|a, b| {
+                [0, 1]
+                    .map(|k| [0, 1].map(|n| if k == 0 { a[k][n].min(b[k][n]) } else { a[k][n].max(b[k][n]) }))
+            })
+            .unwrap_or([[1; 2]; 2]);
+        let last = self.grid.size.map(|s| s - 2);
+        [low.map(|v| v.saturating_sub(BULGE).max(1)), [0, 1].map(|a| (high[a] + BULGE).min(last[a]))]
     }
 
     /// Heights of the four layers around a gap.
@@ -388,7 +404,7 @@ impl<'a> Lofter<'a> {
                 planes[k] = Some(self.part(*layer, regions, filled[k]));
             }
         }
-        Blend::new(planes, heights, moving.then_some(centres))
+        Blend::new(planes, heights, moving.then_some(centres), self.bounds(gap))
     }
 
     /// Regions that are linked with each other, directly or through others.
@@ -466,9 +482,28 @@ impl<'a> Lofter<'a> {
         let trend = self.trend(end);
         let expected = Profile::expected(&trend);
         let goes_on = !end.seen && (layer.cut_off || expected.height > end.limit);
-        let profile = (self.caps == Caps::Shape && !goes_on).then(|| expected.within(end.limit));
+        let close = if self.caps == Caps::Shape && !goes_on {
+            Close::Round(expected.within(end.limit))
+        } else if self.ends_both_ways(end) {
+            // A slice alone is half as thick as its neighbours are away on both sides.
+            Close::Flat(end.limit / 2.0)
+        } else {
+            Close::Flat(0.0)
+        };
         let trend = Trend { area, ..trend };
-        Dome::over((&plane, &runs), (self.grid, layer, end.up), (&trend, perimeter), profile)
+        Dome::over((&plane, &runs), (self.grid, layer, end.up), (&trend, perimeter), close)
+    }
+
+    /// Whether a piece ends on the other side of its slice too.
+    fn ends_both_ways(&self, end: End) -> bool {
+        let (above, below) =
+            (self.links.get(end.layer), end.layer.checked_sub(1).and_then(|g| self.links.get(g)));
+        match (end.hole, end.up) {
+            (false, true) => below.is_none_or(|l| l.begun.contains(&end.of)),
+            (false, false) => above.is_none_or(|l| l.ended.contains(&end.of)),
+            (true, true) => below.is_some_and(|l| l.opened.contains(&end.of)),
+            (true, false) => above.is_some_and(|l| l.closed.contains(&end.of)),
+        }
     }
 
     /// What the slices before an end say of its piece.

@@ -15,6 +15,9 @@ use crate::plane::Plane;
 /// Share of the distance to the next slice for an end that the slices give no sign of.
 const UNSEEN: f64 = 0.75;
 
+/// How far from a lid's rim a vertex on it is taken to be, cells.
+const RIM: f64 = 0.75;
+
 /// What the slices before its end say of a piece: area and distance from the last one, last one first; mm.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Trend {
@@ -76,6 +79,14 @@ impl Profile {
     }
 }
 
+/// How an end closes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Close {
+    /// Flat, so many mm beyond the slice.
+    Flat(f64),
+    Round(Profile),
+}
+
 /// The end of a piece, or of a hole.
 #[derive(Debug, Clone)]
 pub(crate) struct Dome {
@@ -86,8 +97,7 @@ pub(crate) struct Dome {
     q: Vec<f32>,
     /// Radius by which it counts in cells.
     radius: f64,
-    /// None for a flat lid.
-    profile: Option<Profile>,
+    close: Close,
     /// Height of the slice, mm, and whether the dome lies above it.
     base: f64,
     up: bool,
@@ -97,12 +107,12 @@ pub(crate) struct Dome {
 }
 
 impl Dome {
-    /// The dome over the nodes of some runs, from their signed distances. `profile` is none for a flat lid.
+    /// The dome over the nodes of some runs, from their signed distances.
     pub fn over(
         (plane, runs): (&Plane, &[Run]),
         (grid, layer, up): (&Grid, &Layer, bool),
         (trend, perimeter): (&Trend, f64),
-        profile: Option<Profile>,
+        close: Close,
     ) -> Option<Self> {
         let first = runs.first()?;
         let (mut low, mut high) = ([first.from, first.row], [first.to, first.row]);
@@ -117,22 +127,13 @@ impl Dome {
         let radius = if perimeter > 0.0 { 2.0 * area * grid.cell / perimeter } else { (area / 3.2).sqrt() };
         let radius = radius.clamp(0.3, 1e6);
         let mut drift = trend.drift.map(|d| d / grid.cell);
-        if let Some(profile) = profile {
+        if let Close::Round(profile) = close {
             let lean = drift[0].hypot(drift[1]) * profile.height;
             let scale = (0.7 * radius / lean.max(f64::MIN_POSITIVE)).min(1.0);
             drift = drift.map(|d| d * scale);
         }
-        let mut dome = Self {
-            low,
-            size,
-            q: Vec::new(),
-            radius,
-            profile,
-            base: layer.height,
-            up,
-            drift,
-            cell: grid.cell,
-        };
+        let mut dome =
+            Self { low, size, q: Vec::new(), radius, close, base: layer.height, up, drift, cell: grid.cell };
         dome.q = poisson(plane, grid, low, size, radius as f32);
         Some(dome)
     }
@@ -143,12 +144,19 @@ impl Dome {
         let s = if s.abs() < 1e-9 { 0.0 } else { s };
         let (q, beyond) = self.q_at(x - self.drift[0] * s, y - self.drift[1] * s);
         let from_axis = self.radius * (1.0 - q).max(0.0).sqrt() + beyond;
-        match self.profile {
-            None if s > 0.0 => s / self.cell + 0.01,
-            Some(p) if s >= p.height => from_axis + (s - p.height) / self.cell + 1e-4,
-            Some(p) if s > 0.0 => from_axis - self.radius * (1.0 - p.q(s)).max(0.0).sqrt(),
-            _ => from_axis - self.radius,
+        match self.close {
+            _ if s <= 0.0 => from_axis - self.radius,
+            Close::Flat(height) => (from_axis - self.radius).max((s - height) / self.cell),
+            Close::Round(p) if s < p.height => from_axis - self.radius * (1.0 - p.q(s)).max(0.0).sqrt(),
+            Close::Round(p) => from_axis + (s - p.height) / self.cell + 1e-4,
         }
+    }
+
+    /// Whether a place of its slice lies on the rim of a lid in that slice.
+    pub fn has_rim_at(&self, [x, y]: [f64; 2], height: f64) -> bool {
+        let (q, beyond) = self.q_at(x, y);
+        let off = self.radius * ((1.0 - q).max(0.0).sqrt() - 1.0) + beyond;
+        self.close == Close::Flat(0.0) && height == self.base && off.abs() < RIM
     }
 
     /// The box of nodes in which it is not far outside at a height.

@@ -38,17 +38,26 @@ struct Around {
     area: f64,
 }
 
-fn around(vertices: &[Vector3], triangles: &[[u32; 3]], into: &mut Vec<Around>) {
+/// Of a vertex on a rim only neighbours on a rim count as such.
+fn around(vertices: &[Vector3], triangles: &[[u32; 3]], rims: &[bool], into: &mut Vec<Around>) {
     into.clear();
     into.resize(vertices.len(), Around::default());
     for t in triangles {
         let [a, b, c] = t.map(|v| vertices[v as usize]);
         let normal = (b - a).cross(&(c - a));
         let area = normal.norm();
-        for (v, others) in [(t[0], b + c), (t[1], c + a), (t[2], a + b)] {
-            let of = &mut into[v as usize];
-            of.sum += others;
-            of.count += 2.0;
+        let on_rim = t.map(|v| rims[v as usize]);
+        for (k, (p, q)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
+            let of = &mut into[t[k] as usize];
+            if on_rim[k] {
+                for (other, _) in [(p, (k + 1) % 3), (q, (k + 2) % 3)].into_iter().filter(|o| on_rim[o.1]) {
+                    of.sum += other;
+                    of.count += 1.0;
+                }
+            } else {
+                of.sum += p + q;
+                of.count += 2.0;
+            }
             of.normal += normal;
             of.area += area;
         }
@@ -56,16 +65,25 @@ fn around(vertices: &[Vector3], triangles: &[[u32; 3]], into: &mut Vec<Around>) 
 }
 
 /// Evens the triangles and smooths by `smoothing_mm` over triangles of about a `cell`.
-pub(crate) fn finish(vertices: &mut [Vector3], triangles: &[[u32; 3]], smoothing_mm: f64, cell: f64) {
+/// Those on the rim of a lid stay on it.
+pub(crate) fn finish(
+    vertices: &mut [Vector3],
+    triangles: &[[u32; 3]],
+    rims: &[bool],
+    smoothing_mm: f64,
+    cell: f64,
+) {
     let mut all = Vec::new();
     for _ in 0..EVENING {
-        around(vertices, triangles, &mut all);
-        for (v, of) in vertices.iter_mut().zip(&all) {
-            let square = of.normal.norm_squared();
+        around(vertices, triangles, rims, &mut all);
+        for ((v, of), rim) in vertices.iter_mut().zip(&all).zip(rims) {
+            // A rim lies in a slice, so its normal does.
+            let normal = if *rim { Vector3::new(of.normal.x, of.normal.y, 0.0) } else { of.normal };
+            let square = normal.norm_squared();
             // The normals of a smooth surface add up.
-            if of.count > 0.0 && square > (STRAIGHT * of.area).powi(2) {
+            if of.count > 0.0 && square > 0.0 && (*rim || square > (STRAIGHT * of.area).powi(2)) {
                 let way = of.sum / of.count - *v;
-                *v += EVENING_SHARE * (way - of.normal * (way.dot(&of.normal) / square));
+                *v += EVENING_SHARE * (way - normal * (way.dot(&normal) / square));
             }
         }
     }
@@ -77,19 +95,23 @@ pub(crate) fn finish(vertices: &mut [Vector3], triangles: &[[u32; 3]], smoothing
     let rounds = (2.0 * (smoothing_mm / cell).powi(2)).ceil().clamp(1.0, 200.0) as usize;
     for _ in 0..rounds {
         for step in [SHRINK, GROW] {
-            around(vertices, triangles, &mut all);
-            for (v, of) in vertices.iter_mut().zip(&all).filter(|(_, of)| of.count > 0.0) {
-                *v += step * (of.sum / of.count - *v);
+            around(vertices, triangles, rims, &mut all);
+            for ((v, of), rim) in vertices.iter_mut().zip(&all).zip(rims) {
+                if of.count > 0.0 && !rim {
+                    *v += step * (of.sum / of.count - *v);
+                }
             }
         }
     }
     // Twice: the area changes a little on the way.
     for _ in 0..2 {
-        around(vertices, triangles, &mut all);
+        around(vertices, triangles, rims, &mut all);
         let area: f64 = all.iter().map(|of| of.area).sum::<f64>() / 6.0;
         let off = (before - volume(vertices, triangles)) / area.max(f64::MIN_POSITIVE);
-        for (v, of) in vertices.iter_mut().zip(&all) {
-            *v += of.normal.try_normalize(0.0).unwrap_or_default() * off;
+        for ((v, of), rim) in vertices.iter_mut().zip(&all).zip(rims) {
+            if !rim {
+                *v += of.normal.try_normalize(0.0).unwrap_or_default() * off;
+            }
         }
     }
 }

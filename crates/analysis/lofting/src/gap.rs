@@ -26,11 +26,18 @@ pub(crate) struct Blend {
     centres: Option<[[f64; 2]; 4]>,
     /// Controls of the cubic, as sums of the four values.
     controls: [[f32; 4]; 2],
+    /// The box of nodes beyond which it is far outside.
+    bounds: [[usize; 2]; 2],
 }
 
 impl Blend {
     /// `planes` of the two slices are there; all planes are complete. `heights` of planes that are not there do not matter.
-    pub fn new(planes: [Option<Rc<Plane>>; 4], heights: [f64; 4], centres: Option<[[f64; 2]; 4]>) -> Self {
+    pub fn new(
+        planes: [Option<Rc<Plane>>; 4],
+        heights: [f64; 4],
+        centres: Option<[[f64; 2]; 4]>,
+        bounds: [[usize; 2]; 2],
+    ) -> Self {
         let there = [planes[0].is_some(), planes[3].is_some()];
         let rise = heights[2] - heights[1];
         let secant = |k: usize| {
@@ -62,7 +69,7 @@ impl Blend {
             std::array::from_fn(|k| (f64::from(u8::from(k == end)) + sign * rise / 3.0 * slope[k]) as f32)
         };
         let controls = [control(low, 1, 1.0), control(high, 2, -1.0)];
-        Self { planes, heights: [heights[1], heights[2]], centres, controls }
+        Self { planes, heights: [heights[1], heights[2]], centres, controls, bounds }
     }
 
     /// Bernstein's weights at a height.
@@ -119,8 +126,9 @@ impl Blend {
         self.cubic(f, w)
     }
 
-    /// Takes the smaller of what is there and its own values, in a box of nodes.
-    fn fill(&self, grid: &Grid, height: f64, [low, high]: [[usize; 2]; 2], out: &mut [f32]) {
+    /// Takes the smaller of what is there and its own values, in its box of nodes.
+    fn fill(&self, grid: &Grid, height: f64, out: &mut [f32]) {
+        let [low, high] = self.bounds;
         let w = self.weights(height);
         if self.centres.is_some() {
             for j in low[1]..=high[1] {
@@ -155,6 +163,11 @@ pub(crate) struct Field {
 }
 
 impl Field {
+    /// Whether a place of the plane, in cells, lies on the rim of a flat lid.
+    pub fn has_rim_at(&self, place: [f64; 2], height: f64) -> bool {
+        self.domes.iter().chain(&self.pits).any(|d| d.has_rim_at(place, height))
+    }
+
     /// At a node and height.
     pub fn value(&self, grid: &Grid, node: usize, height: f64) -> f64 {
         let mut value = 1e9_f64;
@@ -173,12 +186,12 @@ impl Field {
         value
     }
 
-    /// The values of all nodes of a box; outside of it 1e9.
-    pub fn fill(&self, grid: &Grid, height: f64, bounds: [[usize; 2]; 2], out: &mut Vec<f32>) {
+    /// The values of all nodes; 1e9 far outside.
+    pub fn fill(&self, grid: &Grid, height: f64, out: &mut Vec<f32>) {
         out.clear();
         out.resize(grid.nodes(), 1e9);
         for blend in &self.blends {
-            blend.fill(grid, height, bounds, out);
+            blend.fill(grid, height, out);
         }
         for (dome, add) in self.domes.iter().map(|d| (d, true)).chain(self.pits.iter().map(|d| (d, false))) {
             let [low, high] = dome.bounds(grid, height);

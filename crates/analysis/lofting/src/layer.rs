@@ -131,7 +131,8 @@ impl Layer {
             .filter(|s| layer.of_contour[s.contour as usize] != (None, None))
             .collect();
         for (c, contour) in contours.iter().enumerate() {
-            if layer.of_contour[c] == (None, None) {
+            let lost = layer.of_contour[c] == (None, None);
+            if lost || kinds[c] == Kind::Nothing {
                 warnings.push(match kinds[c] {
                     Kind::Nothing => format!(
                         "slice {}: contour {} lies in another of the same sense and changes nothing",

@@ -2,13 +2,19 @@
 //!
 //! Regions that overlap are linked. One that overlaps nothing may still go on, in a thin bone that runs obliquely: of such, the pair
 //! whose centroids are nearest are linked, measured from where the one is expected by the way its piece had between the slices
-//! before (or behind), within a stated reach of their mean width, if their areas differ by less than four times. What has no
+//! before (or behind), within a stated reach of their mean width, if their areas differ by less than four times. Three that lie on a straight
+//! line are linked over three times that reach. What has no
 //! link then begins or ends. A hole ends where all of it is bone in the neighbouring slice.
 
 use crate::layer::{Layer, Region, Run};
 
 /// By what factor the areas of regions may differ that do not overlap and are linked.
 const AREAS: f64 = 4.0;
+
+/// How far off a straight line a third region may be, in mean widths, to show the way of two; and how far apart the two may be then, in
+/// reaches.
+const STRAIGHT: f64 = 0.4;
+const STRAIGHT_REACH: f64 = 3.0;
 
 /// The links from a slice to the one above.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -44,14 +50,30 @@ impl Links {
                     if low.area > AREAS * high.area || high.area > AREAS * low.area {
                         continue;
                     }
+                    let mean_width = (width(low) + width(high)) / 2.0;
+                    let apart = |way: [f64; 2]| {
+                        let off = |k: usize| high.centroid[k] - low.centroid[k] - way[k] * rise;
+                        off(0).hypot(off(1)) / mean_width
+                    };
                     let before =
                         gap.checked_sub(1).and_then(|g| all[g].lone_below(b).map(|p| way(layers, g, p, b)));
                     let behind =
                         all.get(gap + 1).and_then(|l| l.lone_above(a).map(|n| way(layers, gap + 1, a, n)));
-                    let ways: Vec<[f64; 2]> = [before, behind].into_iter().flatten().collect();
-                    let mean = |k: usize| ways.iter().map(|w| w[k]).sum::<f64>() / ways.len().max(1) as f64;
-                    let off = |k: usize| high.centroid[k] - low.centroid[k] - mean(k) * rise;
-                    let off = off(0).hypot(off(1)) / ((width(low) + width(high)) / 2.0);
+                    let off = match [before, behind].into_iter().flatten().map(apart).reduce(f64::min) {
+                        Some(off) => off,
+                        // No way is known: near, or on a straight line with a third that has no link either.
+                        None => {
+                            let straight = third_ways(layers, &all, gap, (b, a))
+                                .map(apart)
+                                .fold(f64::INFINITY, f64::min);
+                            let plain = apart([0.0; 2]);
+                            if straight <= STRAIGHT && plain <= STRAIGHT_REACH * reach {
+                                plain.min(reach)
+                            } else {
+                                plain
+                            }
+                        }
+                    };
                     if off <= reach {
                         candidates.push((off, b, a));
                     }
@@ -111,6 +133,31 @@ impl Links {
         let special = [&self.ended, &self.begun, &self.closed, &self.opened];
         special.iter().all(|s| s.is_empty()) && self.reached.is_empty()
     }
+}
+
+/// The ways from the region below to others before it, and from others behind to the one above, that have no links and might be the same
+/// piece of bone.
+fn third_ways<'a>(
+    layers: &'a [Layer],
+    all: &'a [Links],
+    gap: usize,
+    (below, above): (u32, u32),
+) -> impl Iterator<Item = [f64; 2]> + 'a {
+    let alike = move |layer: usize, one: u32, other_layer: usize, other: u32| {
+        let (p, q) = (&layers[layer].regions[one as usize], &layers[other_layer].regions[other as usize]);
+        p.area < AREAS * q.area && q.area < AREAS * p.area
+    };
+    let before = gap.checked_sub(1).into_iter().flat_map(move |g| {
+        let free =
+            all[g].ended.iter().filter(move |p| all[g].begun.contains(&below) && alike(g, **p, gap, below));
+        free.map(move |p| way(layers, g, *p, below))
+    });
+    let behind = all.get(gap + 1).into_iter().flat_map(move |l| {
+        let free =
+            l.begun.iter().filter(move |n| l.ended.contains(&above) && alike(gap + 2, **n, gap + 1, above));
+        free.map(move |n| way(layers, gap + 1, above, *n))
+    });
+    before.chain(behind)
 }
 
 /// How far a region's centroid moves for each mm of height.

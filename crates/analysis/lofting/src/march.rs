@@ -22,6 +22,9 @@ pub(crate) struct Mesher<'a> {
     along_column: [Vec<u32>; 2],
     upward: Vec<u32>,
     below: Level,
+    /// The last two levels between which marks were set, and the vertices in them.
+    cut: Vec<(f64, std::ops::Range<usize>)>,
+    marked: Vec<u32>,
 }
 
 /// Which nodes are inside at a height.
@@ -45,6 +48,8 @@ impl<'a> Mesher<'a> {
             along_column: [ids(), ids()],
             upward: ids(),
             below: Level { bits: vec![0; grid.words * grid.size[1]], height },
+            cut: Vec::new(),
+            marked: Vec::new(),
         }
     }
 
@@ -55,7 +60,9 @@ impl<'a> Mesher<'a> {
         value: impl Fn(usize) -> f32,
         root: impl Fn(usize, [f64; 2]) -> f64,
     ) {
+        let first = self.vertices.len();
         self.cut_level(&level, value);
+        self.cut.push((level.height, first..self.vertices.len()));
         let heights = [self.below.height, level.height];
         let (columns, words) = (self.grid.size[0], self.grid.words);
         for (w, (a, b)) in self.below.bits.iter().zip(&level.bits).enumerate() {
@@ -74,6 +81,26 @@ impl<'a> Mesher<'a> {
         self.along_row.swap(0, 1);
         self.along_column.swap(0, 1);
         self.below = level;
+    }
+
+    /// Marks vertices in the levels at two heights, of those since the last call and the one before, that lie where `rim` says, in cells.
+    pub fn mark(&mut self, heights: [f64; 2], rim: impl Fn([f64; 2], f64) -> bool) {
+        for (height, range) in self.cut.iter().filter(|c| heights.contains(&c.0)) {
+            for v in range.clone() {
+                let place = self.grid.in_cells([self.vertices[v].x, self.vertices[v].y]);
+                if rim(place, *height) {
+                    self.marked.push(v as u32);
+                }
+            }
+        }
+        self.cut.drain(..self.cut.len().saturating_sub(1));
+    }
+
+    /// Whether each vertex has been marked.
+    pub fn rims(&self) -> Vec<bool> {
+        let mut rims = vec![false; self.vertices.len()];
+        self.marked.iter().for_each(|v| rims[*v as usize] = true);
+        rims
     }
 
     fn place(&self, x: f64, y: f64) -> [f64; 2] {
