@@ -1,6 +1,6 @@
 //! How long meshes take to read and mend on one core: `cargo bench -p biplane-acquisition --bench meshes`.
 //!
-//! A bumpy ball of 73,728 triangles in every format, against the limit of 60 ms; the same of files named behind `--`.
+//! A bumpy ball of 73,008 triangles in every format, against the limit of 60 ms; the same of files named behind `--`.
 
 use std::fmt::Write as _;
 use std::path::Path;

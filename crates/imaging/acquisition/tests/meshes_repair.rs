@@ -188,6 +188,36 @@ fn a_t_junction_is_left_and_shows_as_a_rim() {
 }
 
 #[test]
+fn needles_are_taken_in_and_the_mesh_stays_closed() {
+    // The same, with triangles without area between the long edge of the front face and the short ones of the top.
+    let [p, q, r, s] = [[0.0, 0.0, 40.0], [40.0, 0.0, 40.0], [40.0, 40.0, 40.0], [0.0, 40.0, 40.0]];
+    let [m, n] = [[20.0, 0.0, 40.0], [30.0, 0.0, 40.0]];
+    let mut soup = cuboid([0.0; 3], [40.0; 3]);
+    soup.splice(2..4, [[p, m, s], [m, r, s], [m, n, r], [n, q, r], [p, q, m], [m, q, n]]);
+    for turned in 0..4 {
+        // Whichever way the needles are wound and in whichever order they come.
+        let mut soup = soup.clone();
+        if turned & 1 == 1 {
+            soup[6].swap(0, 1);
+        }
+        if turned & 2 == 2 {
+            soup.swap(6, 7);
+        }
+        let file = read(&soup);
+        assert_eq!(
+            (file.repairs.needles, file.repairs.degenerate, file.rims.len()),
+            (2, 0, 0),
+            "{:?}",
+            file.notes
+        );
+        assert_eq!(file.notes, [MeshNote::Needles { triangles: 2 }]);
+        assert_relative_eq!(file.model.0.signed_volume(), 64_000.0, max_relative = 1e-12);
+        assert_relative_eq!(file.model.0.area(), 9_600.0, max_relative = 1e-12);
+        assert_eq!(file.model.0.triangles().len(), 16);
+    }
+}
+
+#[test]
 fn cracks_of_rounding_are_welded_and_wider_ones_are_not() {
     let whole = ball([0.0; 3], 40.0, 10);
     let diagonal = 2.0 * 40.0 * 3.0_f64.sqrt();

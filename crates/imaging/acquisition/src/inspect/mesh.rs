@@ -196,13 +196,22 @@ fn more(d: &mut Description, what: &str, count: usize) {
 
 /// What was done, in words.
 fn mended(repairs: &Repairs) -> Option<String> {
-    let Repairs { same_vertices, near_vertices, unused_vertices, degenerate, duplicate, rewound, inverted } =
-        *repairs;
+    let Repairs {
+        same_vertices,
+        near_vertices,
+        unused_vertices,
+        degenerate,
+        needles,
+        duplicate,
+        rewound,
+        inverted,
+    } = *repairs;
     let words: Vec<String> = [
         (same_vertices, "vertices at the place of another, welded"),
         (near_vertices, "vertices of open edges closer than rounding, welded"),
         (unused_vertices, "vertices of no triangle, dropped"),
         (degenerate, "triangles without area, dropped"),
+        (needles, "triangles without area, taken into the neighbour"),
         (duplicate, "triangles with the corners of another, dropped"),
         (rewound, "triangles wound against the others, turned"),
         (inverted, "surfaces inside out, turned"),

@@ -78,6 +78,19 @@ impl Edges {
         Self { starts, halves }
     }
 
+    /// The other triangle of an edge of a triangle, where there is exactly one.
+    pub(crate) fn other(&self, triangle: usize, [a, b]: [u32; 2]) -> Option<usize> {
+        let (near, far) = (a.min(b) as usize, a.max(b));
+        let bucket =
+            self.halves.get(*self.starts.get(near)? as usize..*self.starts.get(near + 1)? as usize)?;
+        let from = bucket.partition_point(|h| h.far < far);
+        let mut on_edge = bucket.iter().skip(from).take_while(|h| h.far == far).map(|h| h.triangle());
+        match [on_edge.next(), on_edge.next(), on_edge.next()] {
+            [Some(p), Some(q), None] => Some(if p == triangle { q } else { p }),
+            _ => None,
+        }
+    }
+
     /// Edge by edge, sorted by their vertices.
     pub(crate) fn iter(&self) -> impl Iterator<Item = Edge<'_>> {
         self.starts.windows(2).enumerate().flat_map(|(near, bucket)| {

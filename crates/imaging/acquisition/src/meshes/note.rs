@@ -69,6 +69,11 @@ pub enum MeshNote {
         /// How many.
         triangles: usize,
     },
+    /// Triangles without area, taken into the neighbour across their longest side.
+    Needles {
+        /// How many.
+        triangles: usize,
+    },
     /// Triangles with the same corners as an earlier one, left out.
     Duplicate {
         /// How many.
@@ -162,6 +167,9 @@ impl fmt::Display for MeshNote {
             Self::Degenerate { triangles } => {
                 write!(f, "{triangles} triangles without area were left out")
             }
+            Self::Needles { triangles } => {
+                write!(f, "{} without area taken into the neighbour", many(*triangles, "triangle"))
+            }
             Self::Duplicate { triangles } => {
                 write!(f, "{triangles} triangles with the corners of another one were left out")
             }
@@ -209,6 +217,7 @@ pub(super) fn notes(
     note(*cavities, MeshNote::Cavities { count: *cavities });
     note(usize::from(mesh.cavities_unknown), MeshNote::CavitiesUnknown);
     note(repairs.degenerate, MeshNote::Degenerate { triangles: repairs.degenerate });
+    note(repairs.needles, MeshNote::Needles { triangles: repairs.needles });
     note(repairs.duplicate, MeshNote::Duplicate { triangles: repairs.duplicate });
     note(repairs.near_vertices, MeshNote::Welded { vertices: repairs.near_vertices });
     note(crossed, MeshNote::Crossed { polygons: crossed });

@@ -1,6 +1,6 @@
 //! Mends what can be mended without a guess, and describes what cannot: the pieces of a mesh, its rims, its seams.
 //!
-//! In this order: vertices at the very same place become one; triangles without area are dropped; of several triangles with the same
+//! In this order: vertices at the very same place become one; triangles without area are taken into their neighbours or dropped; of several triangles with the same
 //! three corners the first stays; the two sides of a crack closer than 10^-6 of the box's diagonal become one (see [`super::weld`]);
 //! the winding is made alike and outward (see [`super::winding`]); vertices of no triangle are dropped. Nothing is filled, cut or
 //! moved otherwise: holes, T-junctions and edges of three triangles stay and are named. The order of vertices and triangles is the
@@ -27,6 +27,9 @@ pub struct Repairs {
     pub unused_vertices: usize,
     /// Triangles without area, left out.
     pub degenerate: usize,
+    /// Triangles without area of three different corners, whose middle one was put into the side of the neighbour that lacked it: the surface
+    /// stays what it is, and closed.
+    pub needles: usize,
     /// Triangles with the same three corners as an earlier one, left out.
     pub duplicate: usize,
     /// Triangles that were wound against their neighbours, turned.
@@ -92,6 +95,7 @@ pub(super) fn repair(points: &[Point3], triangles: Vec<[u32; 3]>) -> Result<Repa
     let given = triangles.len();
     let mut repairs = Repairs::default();
     let (mut places, mut triangles) = weld_same(points, triangles, &mut repairs);
+    take_in_needles(&places, &mut triangles, &mut repairs);
     drop_degenerate(&places, &mut triangles, &mut repairs);
     let mut edges = Edges::of(places.len(), &triangles);
     if drop_duplicates(&mut triangles, &edges, &mut repairs) {
@@ -148,6 +152,48 @@ fn weld_same(
     repairs.same_vertices = points.len() - repairs.unused_vertices - places.len();
     triangles.iter_mut().flatten().for_each(|v| *v = becomes[*v as usize]);
     (places, triangles)
+}
+
+/// Takes in triangles whose corners `p, m, q` lie in a line, `m` in the middle: the neighbour `p, q, d` across their longest side becomes
+/// `p, m, d` and `m, q, d`. Several of them behind each other take a round each.
+fn take_in_needles(places: &[Point3], triangles: &mut Vec<[u32; 3]>, repairs: &mut Repairs) {
+    const MOST_ROUNDS: usize = 16;
+    let before = triangles.len();
+    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    repairs.degenerate += before - triangles.len();
+    let flat = |t: &[u32; 3]| area_vector(places, t).norm() == 0.0;
+    let mut needles: Vec<usize> = (0..triangles.len()).filter(|t| flat(&triangles[*t])).collect();
+    for _ in 0..MOST_ROUNDS {
+        if needles.is_empty() {
+            return;
+        }
+        let edges = Edges::of(places.len(), triangles);
+        // The other triangle across the longest side of each.
+        let across = needles.iter().map(|&t| {
+            let [a, b, c] = triangles[t];
+            let length = |[p, q, _]: &[u32; 3]| (places[*p as usize] - places[*q as usize]).norm_squared();
+            let ways = [[a, b, c], [b, c, a], [c, a, b]];
+            let longest = ways.into_iter().fold(ways[0], |x, y| if length(&y) > length(&x) { y } else { x });
+            (t, longest, edges.other(t, [longest[0], longest[1]]))
+        });
+        let across: Vec<_> = across.collect();
+        let mut touched = vec![false; triangles.len()];
+        for (t, [p, q, middle], neighbour) in across {
+            let Some(n) = neighbour.filter(|n| !touched[*n] && !flat(&triangles[*n])) else {
+                continue;
+            };
+            let with = |instead: u32| triangles[n].map(|v| if v == instead { middle } else { v });
+            let (near, far) = (with(q), with(p));
+            (triangles[n], triangles[t]) = (near, far);
+            (touched[n], touched[t]) = (true, true);
+            repairs.needles += 1;
+        }
+        let before = needles.len();
+        needles.retain(|t| flat(&triangles[*t]));
+        if needles.len() == before {
+            return;
+        }
+    }
 }
 
 fn drop_degenerate(places: &[Point3], triangles: &mut Vec<[u32; 3]>, repairs: &mut Repairs) {

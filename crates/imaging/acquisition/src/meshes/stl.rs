@@ -10,6 +10,7 @@ use biplane_geometry::Point3;
 
 use super::soup::Soup;
 use super::weld::Welder;
+use super::words::{parsed, quoted, words};
 use super::{MeshFileError, MeshFormat};
 
 /// Whether a file that starts like this and has this length may be STL.
@@ -105,44 +106,46 @@ fn ascii(path: &Path, bytes: &[u8]) -> Result<Soup, MeshFileError> {
     let (mut in_solid, mut in_facet, mut last) = (false, false, 0);
     // The name of a solid may be in any encoding.
     for (i, line) in bytes.split(|b| *b == b'\n').enumerate() {
-        let text = String::from_utf8_lossy(line);
         let error = |expected: &str| MeshFileError::Line {
             path: path.to_owned(),
             line: i + 1,
             expected: expected.to_owned(),
-            found: format!("`{}`", text.trim().chars().take(60).collect::<String>()),
+            found: quoted(line),
         };
-        let mut words = text.split_whitespace();
-        let Some(keyword) = words.next() else { continue };
+        let mut split = words(line);
+        let Some(keyword) = split.next() else { continue };
         last = i + 1;
-        match keyword.to_ascii_lowercase().as_str() {
-            "solid" if !in_facet => in_solid = true,
-            "facet" if in_solid && !in_facet => {
+        // None of its words is longer.
+        let mut lower = [0; 9];
+        let short = keyword.len().min(lower.len());
+        lower[..short].copy_from_slice(&keyword[..short]);
+        lower.make_ascii_lowercase();
+        match &lower[..short] {
+            b"solid" if !in_facet => in_solid = true,
+            b"facet" if in_solid && !in_facet => {
                 in_facet = true;
                 corners.clear();
             }
-            "outer" if in_facet => {}
-            "vertex" if in_facet => {
+            b"outer" if in_facet => {}
+            b"vertex" if in_facet => {
                 let mut values = [0.0; 3];
                 for value in &mut values {
-                    *value = words
-                        .next()
-                        .and_then(|w| w.parse().ok())
-                        .ok_or_else(|| error("`vertex` and three numbers"))?;
+                    *value =
+                        split.next().and_then(parsed).ok_or_else(|| error("`vertex` and three numbers"))?;
                 }
                 if corners.len() == 3 {
                     return Err(error("`endloop` after three corners: only triangles are read"));
                 }
                 corners.push(Point3::from(values));
             }
-            "endloop" if in_facet => {
+            b"endloop" if in_facet => {
                 let [a, b, c] = corners[..] else {
                     return Err(error("three lines `vertex x y z` before `endloop`"));
                 };
                 soup.triangle([a, b, c].map(|corner| welder.add(corner)));
             }
-            "endfacet" if in_facet => in_facet = false,
-            "endsolid" if in_solid && !in_facet => in_solid = false,
+            b"endfacet" if in_facet => in_facet = false,
+            b"endsolid" if in_solid && !in_facet => in_solid = false,
             _ if in_facet => return Err(error("`outer loop`, `vertex`, `endloop` or `endfacet`")),
             _ => return Err(error("`facet`, `endsolid` or `solid`")),
         }
