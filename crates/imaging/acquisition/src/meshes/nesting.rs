@@ -7,7 +7,7 @@
 
 use biplane_geometry::{Point3, Vector3};
 
-/// Rays against triangles, at most; 2 s.
+/// Rays against triangles, at most, so that a file of a great many pieces does not take minutes.
 const MOST_TESTS: usize = 1 << 30;
 
 /// A closed surface.
