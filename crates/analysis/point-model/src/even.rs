@@ -25,6 +25,8 @@ const SPLITTING: usize = 12;
 const EXACT_ROUNDS: usize = 30;
 /// Rounds of moving alone, after the number is met.
 const SETTLING: usize = 6;
+/// Rounds in which crossings are mended.
+const MENDING: usize = 6;
 /// Smallest cosine between a triangle's normals before and after a step.
 const TURN: f64 = 0.3;
 
@@ -35,7 +37,8 @@ const NEEDLE: f64 = 0.02;
 pub(crate) struct Even<'a> {
     pub mesh: HalfEdges,
     surface: &'a Surface,
-    lines: Option<Surface>,
+    /// The lines of the original, by number.
+    lines: Vec<Surface>,
     /// Of each vertex, the triangle of the original that it lies on.
     near: Vec<u32>,
     /// The wanted length of edges, mm.
@@ -55,7 +58,7 @@ pub(crate) fn even(
     let length = (original.area() * 2.0 / (3.0_f64.sqrt() * points as f64)).sqrt();
     let mut mesh = HalfEdges::of(original);
     lines::mark(&mut mesh, keep_edges_deg, 3.0 * length);
-    let lines = lines::segments(&mesh);
+    let lines = lines::numbered(&mut mesh);
     let mut near = vec![0; mesh.at.len()];
     for half in 0..mesh.from.len() as u32 {
         near[mesh.from[half as usize] as usize] = half / 3;
@@ -71,12 +74,24 @@ pub(crate) fn even(
         this.length *= ratio.sqrt().clamp(0.7, 1.4);
     }
     this.meet(points)?;
-    for _ in 0..SETTLING {
-        this.flip_to_delaunay();
-        this.relax();
+    this.settle();
+    let mut mesh = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
+    for _ in 0..MENDING {
+        let crossings = Surface::new(&mesh).self_crossings(points);
+        if crossings.is_empty() || !surface.self_crossings(1).is_empty() {
+            break;
+        }
+        this.refine(&crossings);
+        this.meet(points)?;
+        this.settle();
+        mesh = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
     }
-    this.flip_to_delaunay();
-    this.mesh.mesh().map_err(|_| ModelError::Vanished)
+    Ok(mesh)
+}
+
+/// Height of a triangle over its longest side, as a share of that; `normal` is twice its area.
+fn flatness(normal: &Vector3, [a, b, c]: [Point3; 3]) -> f64 {
+    normal.norm() / (a - b).norm_squared().max((b - c).norm_squared()).max((c - a).norm_squared())
 }
 
 impl Even<'_> {
@@ -139,10 +154,10 @@ impl Even<'_> {
             let (a, b) = (self.mesh.from[h as usize], self.mesh.to(h));
             let free = match self.mesh.hold[a as usize] {
                 Hold::Free => true,
-                Hold::Line => self.mesh.sharp[h as usize],
+                Hold::Line => self.mesh.is_sharp(h),
                 Hold::Corner => {
                     let other = self.mesh.hold[b as usize];
-                    self.mesh.sharp[h as usize] && matches!(other, Hold::Corner | Hold::Fixed)
+                    self.mesh.is_sharp(h) && matches!(other, Hold::Corner | Hold::Fixed)
                 }
                 Hold::Fixed => false,
             };
@@ -198,8 +213,12 @@ impl Even<'_> {
 
     /// The place on the surface, or on the lines, for a vertex that would be at `at`.
     fn on_surface(&self, vertex: u32, at: &Point3) -> (Point3, u32) {
-        match (self.mesh.hold[vertex as usize], &self.lines) {
-            (Hold::Line, Some(lines)) => (lines.closest(at).at, NONE),
+        let line = match self.mesh.hold[vertex as usize] {
+            Hold::Line => self.lines.get(self.mesh.line_at(vertex) as usize),
+            _ => None,
+        };
+        match line {
+            Some(line) => (line.closest(at).at, NONE),
             _ => {
                 let found = self.surface.closest_near(at, self.near[vertex as usize]);
                 (found.at, found.triangle)
@@ -207,15 +226,17 @@ impl Even<'_> {
         }
     }
 
-    /// Whether both triangles of an edge, if it were turned, would lie as they lie now.
-    fn flip_keeps_sides(&self, half: u32) -> bool {
+    /// Whether both triangles of an edge, if it were turned, would lie as they lie now, and not become needles.
+    fn may_flip(&self, half: u32) -> bool {
         let twin = self.mesh.twin[half as usize];
         let ([a, b, c], [_, _, d]) = (self.mesh.corners(half), self.mesh.corners(twin));
         let (first, second) = (self.mesh.normal(half), self.mesh.normal(twin));
-        let side = first.normalize() + second.normalize();
+        let side = first / first.norm() + second / second.norm();
+        let turned = [(d - a).cross(&(c - a)), (c - b).cross(&(d - b))];
         let size = side.norm();
-        let turned = [(c - a).cross(&(d - a)) * -1.0, (d - b).cross(&(c - b)) * -1.0];
-        turned.iter().all(|n| n.dot(&side) > 0.7 * n.norm() * size)
+        let now = flatness(&first, [a, b, c]).min(flatness(&second, [a, b, d]));
+        let then = flatness(&turned[0], [a, c, d]).min(flatness(&turned[1], [b, c, d]));
+        turned.iter().all(|n| n.dot(&side) > 0.7 * n.norm() * size) && (then > NEEDLE || then > now)
     }
 
     fn flip_to_six(&mut self) {
@@ -226,7 +247,7 @@ impl Even<'_> {
             .collect();
         for half in self.edges() {
             let twin = self.mesh.twin[half as usize];
-            if twin == NONE || self.mesh.sharp[half as usize] {
+            if twin == NONE || self.mesh.is_sharp(half) {
                 continue;
             }
             let [a, b, c, d] =
@@ -235,7 +256,7 @@ impl Even<'_> {
                 let of = |v: usize, by: i32| (valence[v] + by - wanted[v]).pow(2);
                 of(a, -change) + of(b, -change) + of(c, change) + of(d, change)
             };
-            if off(1) < off(0) && self.flip_keeps_sides(half) && self.mesh.flip(half) {
+            if off(1) < off(0) && self.may_flip(half) && self.mesh.flip(half) {
                 valence[a] -= 1;
                 valence[b] -= 1;
                 valence[c] += 1;
@@ -250,7 +271,7 @@ impl Even<'_> {
             let mut flips = 0;
             for half in self.edges() {
                 let twin = self.mesh.twin[half as usize];
-                if twin == NONE || self.mesh.sharp[half as usize] {
+                if twin == NONE || self.mesh.is_sharp(half) {
                     continue;
                 }
                 let cotangent = |h: u32| {
@@ -258,10 +279,7 @@ impl Even<'_> {
                     let (u, v) = (a - c, b - c);
                     u.dot(&v) / u.cross(&v).norm().max(1e-300)
                 };
-                if cotangent(half) + cotangent(twin) < -1e-9
-                    && self.flip_keeps_sides(half)
-                    && self.mesh.flip(half)
-                {
+                if cotangent(half) + cotangent(twin) < -1e-9 && self.may_flip(half) && self.mesh.flip(half) {
                     flips += 1;
                 }
             }
@@ -319,6 +337,37 @@ impl Even<'_> {
             }
         }
         self.move_to(vertex, (to, near))
+    }
+
+    fn settle(&mut self) {
+        for _ in 0..SETTLING {
+            self.flip_to_delaunay();
+            self.relax();
+        }
+        self.flip_to_delaunay();
+    }
+
+    /// Puts more points where triangles cross, and holds them there: the sides of a thin part then lie where they should.
+    fn refine(&mut self, crossings: &[[u32; 2]]) {
+        let live: Vec<u32> =
+            (0..self.mesh.from.len() as u32).step_by(3).filter(|h| self.mesh.is_live(*h)).collect();
+        let mut edges = Vec::with_capacity(crossings.len() * 6);
+        for triangle in crossings.as_flattened() {
+            // Triangles of the mesh are those that are left, in their order.
+            let Some(&first) = live.get(*triangle as usize) else { continue };
+            for half in first..first + 3 {
+                let twin = self.mesh.twin[half as usize];
+                edges.push(if twin == NONE { half } else { half.min(twin) });
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        for half in edges {
+            self.split(half);
+            for v in [self.mesh.from[half as usize], self.mesh.to(half)] {
+                self.mesh.hold[v as usize] = Hold::Fixed;
+            }
+        }
     }
 
     /// Splits the longest edges or collapses the shortest until the number of points is met.

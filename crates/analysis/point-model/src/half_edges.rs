@@ -30,8 +30,8 @@ pub(crate) struct HalfEdges {
     /// Where each half-edge begins; [`NONE`] for a triangle that is gone.
     pub from: Vec<u32>,
     pub twin: Vec<u32>,
-    /// Of each half-edge, whether its edge is sharp or a rim: it is never turned.
-    pub sharp: Vec<bool>,
+    /// Of each half-edge the line that it is part of, a sharp edge or a rim, which is never turned; [`NONE`] for the others.
+    pub line: Vec<u32>,
     pub hold: Vec<Hold>,
     /// A half-edge that begins in each vertex; [`NONE`] for a vertex that is gone.
     out: Vec<u32>,
@@ -69,7 +69,7 @@ impl HalfEdges {
         let count = mesh.vertices().len();
         let mut this = Self {
             at: mesh.vertices().to_vec(),
-            sharp: twin.iter().map(|t| *t == NONE).collect(),
+            line: twin.iter().map(|t| if *t == NONE { 0 } else { NONE }).collect(),
             hold: vec![Hold::Free; count],
             out: vec![NONE; count],
             origin: (0..count as u32).collect(),
@@ -147,6 +147,17 @@ impl HalfEdges {
     /// Whether this half-edge stands for its edge: of two twins the first.
     pub fn stands_for_edge(&self, half: u32) -> bool {
         self.is_live(half) && (self.twin[half as usize] == NONE || half < self.twin[half as usize])
+    }
+
+    pub fn is_sharp(&self, half: u32) -> bool {
+        self.line[half as usize] != NONE
+    }
+
+    /// The line that a vertex lies on, of several any.
+    pub fn line_at(&self, vertex: u32) -> u32 {
+        let mut line = NONE;
+        self.fan(vertex, |h| line = line.min(self.line[h as usize]).min(self.line[prev(h) as usize]));
+        line
     }
 
     pub fn to(&self, half: u32) -> u32 {
@@ -278,11 +289,11 @@ impl HalfEdges {
             let (n, p) = (next(h), prev(h));
             let apex = self.from[p as usize];
             let (x, y) = (self.twin[n as usize], self.twin[p as usize]);
-            let sharp = self.sharp[n as usize] || self.sharp[p as usize] || x == NONE || y == NONE;
+            let line = self.line[n as usize].min(self.line[p as usize]);
             for (one, other) in [(x, y), (y, x)] {
                 if one != NONE {
                     self.twin[one as usize] = other;
-                    self.sharp[one as usize] = sharp;
+                    self.line[one as usize] = line;
                 }
             }
             // Of the edge that is left, one half begins in the apex, the other in b.
@@ -304,7 +315,7 @@ impl HalfEdges {
     /// Turns an edge within its two triangles, if it is not sharp and its new ends are not neighbours.
     pub fn flip(&mut self, half: u32) -> bool {
         let twin = self.twin[half as usize];
-        if twin == NONE || self.sharp[half as usize] {
+        if twin == NONE || self.is_sharp(half) {
             return false;
         }
         let (hn, hp, gn, gp) = (next(half), prev(half), next(twin), prev(twin));
@@ -316,14 +327,14 @@ impl HalfEdges {
             return false;
         }
         // a b c and b a d become d c a and c d b, so that half runs from d to c: each outer side goes to its new place.
-        let outer = [hn, hp, gn, gp].map(|h| (self.twin[h as usize], self.sharp[h as usize]));
+        let outer = [hn, hp, gn, gp].map(|h| (self.twin[h as usize], self.line[h as usize]));
         let places = [(half, d), (hn, c), (hp, a), (twin, c), (gn, d), (gp, b)];
         for (place, vertex) in places {
             self.from[place as usize] = vertex;
         }
-        let mut join = |place: u32, (other, sharp): (u32, bool)| {
+        let mut join = |place: u32, (other, line): (u32, u32)| {
             self.twin[place as usize] = other;
-            self.sharp[place as usize] = sharp;
+            self.line[place as usize] = line;
             if other != NONE {
                 self.twin[other as usize] = place;
             }
@@ -342,10 +353,10 @@ impl HalfEdges {
     /// Puts a vertex onto an edge; its number.
     pub fn split(&mut self, half: u32, at: Point3) -> u32 {
         let twin = self.twin[half as usize];
-        let sharp = self.sharp[half as usize];
+        let line = self.line[half as usize];
         let ends = [self.from[half as usize], self.to(half)];
         let origin = self.at.len() as u32;
-        let hold = if sharp { Hold::Line } else { Hold::Free };
+        let hold = if line != NONE { Hold::Line } else { Hold::Free };
         let middle = self.add(at, hold, NONE, origin);
         // Beside each half: a to b and the apex c becomes a to the middle, and a new triangle from the middle to b.
         let new_of = |this: &mut Self, h: u32| {
@@ -354,14 +365,14 @@ impl HalfEdges {
             let new = this.from.len() as u32;
             this.from.extend([middle, b, c]);
             this.twin.extend([NONE, this.twin[n as usize], n]);
-            this.sharp.extend([sharp, this.sharp[n as usize], false]);
+            this.line.extend([line, this.line[n as usize], NONE]);
             let beyond = this.twin[n as usize];
             if beyond != NONE {
                 this.twin[beyond as usize] = new + 1;
             }
             this.from[n as usize] = middle;
             this.twin[n as usize] = new + 2;
-            this.sharp[n as usize] = false;
+            this.line[n as usize] = NONE;
             this.out[b as usize] = new + 1;
             this.out[c as usize] = new + 2;
             new
@@ -423,7 +434,7 @@ mod tests {
                     (this.from[twin as usize], this.to(twin)),
                     (this.to(half), this.from[half as usize])
                 );
-                assert_eq!(this.sharp[twin as usize], this.sharp[half as usize]);
+                assert_eq!(this.line[twin as usize], this.line[half as usize]);
             }
             let mut found = false;
             this.fan(this.from[half as usize], |h| found |= h == half);

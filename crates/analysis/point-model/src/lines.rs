@@ -22,8 +22,9 @@ pub(crate) fn mark(mesh: &mut HalfEdges, sharper_than_deg: f64, shortest_mm: f64
         }
         let (a, b) = (mesh.normal(half), mesh.normal(twin));
         let sharp = a.dot(&b) < least * a.norm() * b.norm();
-        mesh.sharp[half as usize] = sharp;
-        mesh.sharp[twin as usize] = sharp;
+        for h in [half, twin] {
+            mesh.line[h as usize] = if sharp { 0 } else { NONE };
+        }
     }
     // What is left of a branch may be too short in turn.
     for _ in 0..3 {
@@ -78,12 +79,36 @@ fn hold_small_rims(mesh: &mut HalfEdges, shorter_than_mm: f64) {
     }
 }
 
-/// The marked lines as segments; none if there is none.
-pub(crate) fn segments(mesh: &HalfEdges) -> Option<Surface> {
-    let marked = |h: &u32| mesh.stands_for_edge(*h) && mesh.sharp[*h as usize];
-    let ends: Vec<[u32; 2]> =
-        (0..mesh.from.len() as u32).filter(marked).map(|h| [mesh.from[h as usize], mesh.to(h)]).collect();
-    Surface::of_segments(&mesh.at, &ends)
+/// Numbers the marked lines, each from corner to corner or a loop, and gives the segments of each.
+pub(crate) fn numbered(mesh: &mut HalfEdges) -> Vec<Surface> {
+    let lines = Lines::of(mesh);
+    let mut numbered = vec![false; mesh.from.len()];
+    let mut trees = Vec::new();
+    let goes_on = |v: &u32| mesh.hold[*v as usize] == Hold::Line;
+    let ends: Vec<u32> = mesh.live().filter(|v| !goes_on(v)).chain(mesh.live().filter(goes_on)).collect();
+    for first in ends {
+        for &begin in lines.at(first) {
+            if numbered[begin as usize] {
+                continue;
+            }
+            let (mut here, mut half) = (first, begin);
+            let mut segments = Vec::new();
+            while !numbered[half as usize] {
+                numbered[half as usize] = true;
+                for h in [half, mesh.twin[half as usize]].into_iter().filter(|h| *h != NONE) {
+                    mesh.line[h as usize] = trees.len() as u32;
+                }
+                let there = other_end(mesh, half, here);
+                segments.push([here, there]);
+                here = there;
+                if let ([a, b], Hold::Line) = (lines.at(here), mesh.hold[here as usize]) {
+                    half = if *a == half { *b } else { *a };
+                }
+            }
+            trees.extend(Surface::of_segments(&mesh.at, &segments));
+        }
+    }
+    trees
 }
 
 /// The half-edges that stand for the marked edges at each vertex.
@@ -94,9 +119,8 @@ struct Lines {
 
 impl Lines {
     fn of(mesh: &HalfEdges) -> Self {
-        let marked: Vec<u32> = (0..mesh.from.len() as u32)
-            .filter(|h| mesh.stands_for_edge(*h) && mesh.sharp[*h as usize])
-            .collect();
+        let marked: Vec<u32> =
+            (0..mesh.from.len() as u32).filter(|h| mesh.stands_for_edge(*h) && mesh.is_sharp(*h)).collect();
         let mut start = vec![0_u32; mesh.at.len() + 1];
         let ends = |h: u32| [mesh.from[h as usize], mesh.to(h)];
         for v in marked.iter().flat_map(|h| ends(*h)) {
@@ -167,8 +191,8 @@ fn drop_short(mesh: &mut HalfEdges, shortest_mm: f64) -> bool {
     }
     for half in &dropped {
         let twin = mesh.twin[*half as usize];
-        mesh.sharp[*half as usize] = false;
-        mesh.sharp[twin as usize] = false;
+        mesh.line[*half as usize] = NONE;
+        mesh.line[twin as usize] = NONE;
     }
     !dropped.is_empty()
 }
@@ -184,7 +208,7 @@ pub(crate) fn middle_along(mesh: &HalfEdges, vertex: u32) -> Option<Point3> {
         count += 1;
     };
     mesh.fan(vertex, |h| {
-        if mesh.sharp[h as usize] {
+        if mesh.is_sharp(h) {
             meet(mesh.to(h));
         }
         if mesh.twin[prev(h) as usize] == NONE {

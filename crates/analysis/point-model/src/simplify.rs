@@ -123,7 +123,7 @@ impl Simplifier {
             let here = this.mesh.at[v as usize].coords - middle;
             let own = Quadric::plane(&unit, &here, area).plus(&Quadric::point(&here, TOWARDS_POINTS * area));
             this.add(v, &own);
-            if this.mesh.sharp[half as usize] {
+            if this.mesh.is_sharp(half) {
                 let along = this.mesh.at[end as usize].coords - middle - here;
                 if let Some(upright) = unit.cross(&along).try_normalize(0.0) {
                     let line = Quadric::plane(&upright, &here, ALONG_LINES * along.norm_squared());
@@ -177,7 +177,7 @@ impl Simplifier {
             return None;
         }
         let stays = self.mesh.to(drawn);
-        let to = if of_a.max(of_b) >= 3 || (of_a.max(of_b) == 2 && !self.mesh.sharp[half as usize]) {
+        let to = if of_a.max(of_b) >= 3 || (of_a.max(of_b) == 2 && !self.mesh.is_sharp(half)) {
             at(stays)
         } else {
             let least = quadric.a.try_inverse().map(|inverse| inverse * quadric.b);
