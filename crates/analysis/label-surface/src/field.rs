@@ -32,11 +32,16 @@ pub(crate) struct Line {
     pub first: f64,
     pub step: f64,
     pub count: usize,
-    /// Whether the volume ends there while the label goes on: then the last place but one is at the border of the volume.
+    /// Whether the volume ends there while the label goes on: then a place of [`Line::ends`] is at the border of the volume.
     pub lids: [bool; 2],
 }
 
 impl Line {
+    /// Numbers of the first and the last place that may be inside.
+    pub fn ends(&self) -> [usize; 2] {
+        [1, self.count - 3]
+    }
+
     /// The place of a fraction of a step.
     pub fn at(&self, n: f64) -> f64 {
         self.first + n * self.step
@@ -104,17 +109,19 @@ impl Field {
         self.lines.map(|l| l.count)
     }
 
-    /// Makes the outermost places outside, so that what is inside is enclosed.
+    /// Makes the places beyond the ends outside, so that what is inside is enclosed.
     fn close(&mut self) {
-        let [columns, rows, slices] = self.size();
+        let [columns, rows, _] = self.size();
+        let within = |axis: usize, n: usize| {
+            let [first, last] = self.lines[axis].ends();
+            (first..=last).contains(&n)
+        };
+        let [first, last] = self.lines[0].ends();
         for (line, values) in self.values.chunks_exact_mut(columns).enumerate() {
-            let (j, k) = (line % rows, line / rows);
-            if j == 0 || j + 1 == rows || k == 0 || k + 1 == slices {
-                values.fill(0.0);
-            }
-            if let [first, .., last] = values {
-                (*first, *last) = (0.0, 0.0);
-            }
+            let inside = within(1, line % rows) && within(2, line / rows);
+            let row = if inside { first..last + 1 } else { 0..0 };
+            values[..row.start].fill(0.0);
+            values[row.end..].fill(0.0);
         }
     }
 }
@@ -131,8 +138,8 @@ fn line(mask: &Mask, stack: &Stack, axis: usize, lids: [bool; 2], smoothing_mm: 
     let high = end(mask.low[axis] + mask.size[axis] - 1, 1.0, lids[1]);
     let steps = ((high - low) / step).ceil().max(1.0);
     let step = (high - low) / steps;
-    // One place more at either end, which is outside.
-    Line { first: low - step, step, count: steps as usize + 3, lids }
+    // Places outside at either end; the library leaves out what lies between the last two.
+    Line { first: low - step, step, count: steps as usize + 4, lids }
 }
 
 /// Weights of the voxels of a mask along an axis, from the first one that counts.

@@ -15,6 +15,8 @@ use crate::stack::Stack;
 
 /// Value above the level that is given to a place that has to be inside.
 const JOINED: f32 = 0.02;
+/// No place of the lattice is nearer to the level than this: crossings in it would give triangles without area.
+const NEAREST: f32 = 1e-3;
 
 /// The corners of a cell's faces, in order around them; corner `c` is at `c & 1`, `c >> 1 & 1`, `c >> 2`.
 const FACES: [[u8; 4]; 6] =
@@ -24,7 +26,7 @@ const FACES: [[u8; 4]; 6] =
 pub(crate) fn net(field: &Field, stack: &Stack, level: f32) -> Option<Mesh> {
     let size = field.size();
     // Negative inside, as the library has it.
-    let mut below: Vec<f32> = field.values.iter().map(|v| level - v).collect();
+    let mut below: Vec<f32> = field.values.iter().map(|v| apart(level - v)).collect();
     make_well_composed(&mut below, size);
     let shape = RuntimeShape::<u32, 3>::new(size.map(|n| n as u32));
     let mut net = SurfaceNetsBuffer::default();
@@ -32,11 +34,12 @@ pub(crate) fn net(field: &Field, stack: &Stack, level: f32) -> Option<Mesh> {
     let place = |(at, cell): (&[f32; 3], &[u32; 3])| -> Point3 {
         stack.point(std::array::from_fn(|a| {
             let line = &field.lines[a];
+            let [first, last] = line.ends();
             // A lid lies in the border of the volume.
-            if line.lids[0] && cell[a] == 0 {
-                line.at(1.0)
-            } else if line.lids[1] && cell[a] as usize + 2 == line.count {
-                line.at(line.count as f64 - 2.0)
+            if line.lids[0] && (cell[a] as usize) < first {
+                line.at(first as f64)
+            } else if line.lids[1] && cell[a] as usize >= last {
+                line.at(last as f64)
             } else {
                 line.at(f64::from(at[a]))
             }
@@ -46,6 +49,10 @@ pub(crate) fn net(field: &Field, stack: &Stack, level: f32) -> Option<Mesh> {
     let triangles = net.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
     let mesh = Mesh::new(vertices, triangles).ok()?;
     Some(if stack.right_handed() { mesh } else { mesh.inverted() })
+}
+
+fn apart(below: f32) -> f32 {
+    if below < 0.0 { below.min(-NEAREST) } else { below.max(NEAREST) }
 }
 
 /// Takes places inside (negative) until no two sets touch by an edge or a corner only.
@@ -63,10 +70,22 @@ fn make_well_composed(below: &mut [f32], size: [usize; 3]) {
             again.extend(offset.iter().map(|o| at - o));
         }
     };
+    // The four corners of a cell at each column, a bit for each that is inside: most cells are wholly in or out.
+    let mut columns_of_row = vec![0_u8; columns];
     for k in 0..slices - 1 {
         for j in 0..rows - 1 {
-            for i in 0..columns - 1 {
-                look(below, (k * rows + j) * columns + i, &mut again);
+            let row = (k * rows + j) * columns;
+            let four = [row, row + steps[1], row + steps[2], row + steps[1] + steps[2]];
+            columns_of_row.fill(0);
+            for (bit, from) in four.into_iter().enumerate() {
+                for (bits, value) in columns_of_row.iter_mut().zip(&below[from..from + columns]) {
+                    *bits |= u8::from(*value < 0.0) << bit;
+                }
+            }
+            for (i, pair) in columns_of_row.windows(2).enumerate() {
+                if pair[0] != pair[1] || !matches!(pair[0], 0 | 15) {
+                    look(below, row + i, &mut again);
+                }
             }
         }
     }

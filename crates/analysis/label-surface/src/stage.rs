@@ -65,7 +65,7 @@ pub struct LabelSurfaceParams {
 
 impl Default for LabelSurfaceParams {
     fn default() -> Self {
-        Self { label: 0, smoothing_mm: 0.7, keep: Keep::Largest }
+        Self { label: 0, smoothing_mm: 1.0, keep: Keep::Largest }
     }
 }
 
@@ -121,8 +121,8 @@ pub enum LabelSurfaceError {
     },
     /// Nothing is left of the label once it is smooth.
     #[error(
-        "nothing is left of label {label} ({voxels} voxels) when it is smoothed by {smoothing_mm} mm; \
-             set smoothing_mm to less"
+        "nothing is left of label {label} ({voxels} voxels) when it is smoothed by {smoothing_mm} mm; set smoothing_mm to less, \
+             or choose another label: one as thin as a voxel has no surface"
     )]
     Vanished {
         /// As asked for.
