@@ -91,9 +91,7 @@ impl Outline {
 
     /// Fills `segments` with the projected rim. `None` if something is behind the source.
     fn find_rim(&mut self, mesh: &RimMesh, pose: &Pose, view: &Fluoroscope) -> Option<()> {
-        let source = pose.inverse().transform(view.source()).coords;
-        self.facing.clear();
-        self.facing.extend(mesh.planes.iter().map(|(normal, offset)| normal.dot(&source) > *offset));
+        mesh.planes.face(&pose.inverse().transform(view.source()), &mut self.facing);
         self.segments.clear();
         if self.stamp.len() != mesh.vertices.len() || self.stamp_now == u32::MAX {
             self.stamp = vec![0; mesh.vertices.len()];
@@ -101,12 +99,12 @@ impl Outline {
             self.stamp_now = 0;
         }
         self.stamp_now += 1;
-        for edge in &mesh.edges {
-            let (left, right) = (self.facing[edge.left as usize], self.facing[edge.right as usize]);
+        for (ends, sides) in mesh.ends.iter().zip(&mesh.sides) {
+            let [left, right] = sides.map(|face| self.facing[face as usize]);
             if left != right {
                 // The front face has its boundary run through once; the back face's runs the other way.
                 let front = if left { 1 } else { -1 };
-                self.push_segment(mesh, pose, view, edge.ends, front, -front)?;
+                self.push_segment(mesh, pose, view, *ends, front, -front)?;
             }
         }
         for edge in &mesh.odd_edges {
