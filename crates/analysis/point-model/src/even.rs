@@ -76,15 +76,22 @@ pub(crate) fn even(
     this.meet(points)?;
     this.settle();
     let mut mesh = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
+    let mut crossings = Surface::new(&mesh).self_crossings(points);
     for _ in 0..MENDING {
-        let crossings = Surface::new(&mesh).self_crossings(points);
         if crossings.is_empty() || !surface.self_crossings(1).is_empty() {
             break;
         }
         this.refine(&crossings);
-        this.meet(points)?;
+        if this.meet(points).is_err() {
+            break;
+        }
         this.settle();
-        mesh = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
+        let mended = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
+        let left = Surface::new(&mended).self_crossings(points);
+        if left.len() >= crossings.len() {
+            break;
+        }
+        (mesh, crossings) = (mended, left);
     }
     Ok(mesh)
 }
@@ -349,8 +356,9 @@ impl Even<'_> {
 
     /// Puts more points where triangles cross, and holds them there: the sides of a thin part then lie where they should.
     fn refine(&mut self, crossings: &[[u32; 2]]) {
-        let live: Vec<u32> =
-            (0..self.mesh.from.len() as u32).step_by(3).filter(|h| self.mesh.is_live(*h)).collect();
+        // As a mesh leaves them out.
+        let with_area = |h: &u32| self.mesh.is_live(*h) && self.mesh.normal(*h).norm() > 0.0;
+        let live: Vec<u32> = (0..self.mesh.from.len() as u32).step_by(3).filter(with_area).collect();
         let mut edges = Vec::with_capacity(crossings.len() * 6);
         for triangle in crossings.as_flattened() {
             // Triangles of the mesh are those that are left, in their order.
