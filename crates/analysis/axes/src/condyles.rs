@@ -128,7 +128,7 @@ pub(crate) fn fit(
         at += u * step[0] + v * step[1];
         axis = (axis + u * step[2] + v * step[3]).normalize();
         radii = [radii[0] + step[4], radii[1] + step[5]];
-        if round > 25 && step.norm() < 1e-10 {
+        if round > 25 && step.norm() < 1e-8 {
             break;
         }
     }

@@ -13,44 +13,43 @@ use crate::condyles::{self, Condyles};
 use crate::figures;
 use crate::frame::angle_deg;
 use crate::head::{self, Head};
-use crate::proposal::Proposal;
+use crate::proposal::{Proposal, Refusal};
 use crate::section::{Section, section};
 use crate::shaft::{self, Shaft};
 use crate::shape::Shape;
 
-pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
+pub(crate) fn propose(shape: &Shape) -> Result<Proposal, Refusal> {
     let mut warnings = Vec::new();
     let (shaft, head) = stand(shape)?;
     let y = shaft.direction;
     let ends = Ends::of(shape, &y).ok_or("no section through the condyles was found")?;
     let (x, z) = ends.senses(shape, &shaft, &mut warnings)?;
-    let fitted = condyles::fit(shape, [x, y, z], &ends.middle, ends.width, condyles::BONE)
-        .ok_or("no two round condyles were found at the end away from the shaft")?;
+    // The shaft and the head are good for a person's landmarks even where no condyles are.
+    let mut marks = vec![("shaft_distal", shaft.ends[0]), ("shaft_proximal", shaft.ends[1])];
+    let mut features = vec![figures::line("shaft", &shaft.ends[0], &shaft.ends[1])];
+    if let Some(head) = &head {
+        marks.push(("hip_centre", head.centre));
+        features.push(figures::sphere("femoral head", &head.centre, head.radius));
+    }
+    let Some(fitted) = condyles::fit(shape, [x, y, z], &ends.middle, ends.width, condyles::BONE) else {
+        let why =
+            "no two round condyles were found at the end away from the shaft (were they cut for an implant?)";
+        return Err(Refusal { why: why.to_owned(), marks, features });
+    };
     judge(&shaft, &fitted, head.as_ref(), ends.width, &mut warnings);
-    if let Some(said) = other_side(shape, &shaft, &fitted, &y, ends.width) {
+    if let Some(said) = other_side(shape, &fitted, &y, ends.width) {
         warnings.push(said);
     }
     let [medial, lateral] = fitted.centres;
-    let mut marks = vec![
-        ("medial_condyle", medial),
-        ("lateral_condyle", lateral),
-        ("shaft_distal", shaft.ends[0]),
-        ("shaft_proximal", shaft.ends[1]),
-    ];
-    let mut features = vec![
-        figures::line("shaft", &shaft.ends[0], &shaft.ends[1]),
-        figures::line("axis of the condyles", &medial, &lateral),
-    ];
+    marks.push(("medial_condyle", medial));
+    marks.push(("lateral_condyle", lateral));
+    features.push(figures::line("axis of the condyles", &medial, &lateral));
     for (k, name) in ["medial condyle", "lateral condyle"].into_iter().enumerate() {
         let half = fitted.axis * fitted.half_widths[k];
         let at = fitted.centres[k];
         features.push(figures::cylinder(name, &(at - half), &(at + half), fitted.radii[k]));
     }
-    if let Some(head) = &head {
-        marks.push(("hip_centre", head.centre));
-        features.push(figures::sphere("femoral head", &head.centre, head.radius));
-    }
-    Proposal::of_marks(BodyKind::Femur, marks, features, warnings)
+    Ok(Proposal::of_marks(BodyKind::Femur, marks, features, warnings)?)
 }
 
 /// The shaft, pointing up, and the head.
@@ -85,8 +84,8 @@ fn stand(shape: &Shape) -> Result<(Shaft, Option<Head>), String> {
             [None, None] => Err("it is long, but no femoral head was found at either end".to_owned()),
         };
     }
-    let shaft =
-        shaft::cut(shape, shape.hint.map(|h| h.superior)).ok_or("no shaft was found at any of its ends")?;
+    let shaft = shaft::cut(shape, shape.hint.map(|h| h.superior))
+        .ok_or("the shape does not tell which of its ends is cut through the shaft")?;
     Ok((shaft, None))
 }
 
@@ -236,7 +235,7 @@ fn judge(shaft: &Shaft, condyles: &Condyles, head: Option<&Head>, width: f64, wa
 
 /// Says if the femur looks like one of the other side: the shaft leans to the lateral side going up, and the lateral ridge of the groove
 /// stands farther forward. Only where both say so.
-fn other_side(shape: &Shape, shaft: &Shaft, condyles: &Condyles, y: &Vector3, width: f64) -> Option<String> {
+fn other_side(shape: &Shape, condyles: &Condyles, y: &Vector3, width: f64) -> Option<String> {
     let z = condyles.axis;
     let lean = 90.0 - angle_deg(y, &z);
     let x = y.cross(&z).normalize();
@@ -255,8 +254,9 @@ fn other_side(shape: &Shape, shaft: &Shaft, condyles: &Condyles, y: &Vector3, wi
             .fold(f64::NEG_INFINITY, f64::max)
     };
     let ahead = ridge(1.0) - ridge(-1.0);
-    let _ = shaft;
-    (lean < -1.5 && ahead < -0.02 * width).then(|| {
+    // Each is about 1 in a usual knee of the side that was said.
+    let [lean_vote, ahead_vote] = [lean / 5.0, ahead / (0.03 * width)];
+    (lean_vote < -0.2 && ahead_vote < -0.2 && lean_vote + ahead_vote < -0.8).then(|| {
         format!(
             "it looks like a femur of the other side: its shaft leans {:.1} degrees to what would be medial, and the ridge of the groove \
              that would be lateral stays {:.1} mm behind the other one; check side",

@@ -17,21 +17,11 @@ use crate::figures;
 use crate::frame::angle_deg;
 use crate::proposal::Proposal;
 use crate::section::{Section, section};
-use crate::shape::Shape;
+use crate::shape::{Shape, half_sphere};
 use crate::symmetry::{Mirror, Places};
 
 /// Above this a body is hardly its own mirror image: misfit over size.
 const ASYMMETRIC: f64 = 0.018;
-
-/// Directions over a half sphere, spread evenly (a Fibonacci lattice).
-fn half_sphere(count: i32) -> impl Iterator<Item = Vector3> {
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    (0..count).map(move |k| {
-        let z = (f64::from(k) + 0.5) / f64::from(count);
-        let (r, a) = ((1.0 - z * z).sqrt(), golden * f64::from(k));
-        Vector3::new(r * a.cos(), r * a.sin(), z)
-    })
-}
 
 /// Directions to start the search for a mirror plane from: the own axes, and others all around.
 fn starts() -> Vec<Vector3> {
@@ -153,11 +143,12 @@ fn opening(shape: &Shape, z: &Vector3) -> Option<Vector3> {
     (best < 0.25 * most).then_some(direction).flatten()
 }
 
-/// The normal of the distal cut: of the flat faces square to the mirror plane, the one that looks most nearly to where the component
-/// is open.
+/// The normal of the distal cut: of the flat inner faces square to the mirror plane, the one that looks most nearly to where the
+/// component is open and has the anterior and the posterior cut at right angles on both sides (the chamfers have not).
 fn distal_cut(shape: &Shape, z: &Vector3, up: &Vector3) -> Option<Vector3> {
-    const BIN: f64 = 0.5;
-    const RANGE: i32 = 80;
+    /// Bins around the circle, and how many of them are a degree.
+    const BINS: usize = 720;
+    const DEGREE: f64 = 2.0;
     let side = z.cross(up);
     let total: f64 = shape.samples.iter().map(|s| s.area).sum();
     let faces: Vec<(f64, f64)> = shape
@@ -166,28 +157,31 @@ fn distal_cut(shape: &Shape, z: &Vector3, up: &Vector3) -> Option<Vector3> {
         .filter(|s| s.normal.dot(z).abs() < 0.1)
         .map(|s| (s.normal.dot(&side).atan2(s.normal.dot(up)).to_degrees(), s.area))
         .collect();
-    // How much area faces within a kernel of 1.5 degrees around each angle.
-    let density = |angle: f64| -> f64 {
-        faces
-            .iter()
-            .map(|(a, area)| {
-                let t = (a - angle) / 3.0;
-                if t.abs() < 1.0 { area * (1.0 - t * t) } else { 0.0 }
-            })
-            .sum()
+    let mut bins = vec![0.0; BINS];
+    for (angle, area) in &faces {
+        bins[((angle + 360.0) * DEGREE).round() as usize % BINS] += area / total;
+    }
+    let at = |k: i32| bins[k.rem_euclid(BINS as i32) as usize];
+    // What faces within 3 degrees of each angle.
+    let density: Vec<f64> = (0..BINS as i32)
+        .map(|k| (-6..=6).map(|d| at(k + d) * (1.0 - f64::from(d * d) / 49.0)).sum())
+        .collect();
+    let around = |degrees: f64, range: f64| {
+        let (from, to) = ((degrees - range) * DEGREE, (degrees + range) * DEGREE);
+        (from.round() as i32..=to.round() as i32)
+            .map(|k| density[k.rem_euclid(BINS as i32) as usize])
+            .fold(0.0, f64::max)
     };
-    let all: Vec<f64> = (-RANGE..=RANGE).map(|k| density(f64::from(k) * BIN)).collect();
-    let peak = all.iter().enumerate().skip(1).filter(|(k, d)| {
-        let next = all.get(k + 1).copied().unwrap_or(f64::INFINITY);
-        **d >= all[k - 1] && **d > next && **d > 0.012 * total
+    let mut sorted = density.clone();
+    sorted.sort_by(f64::total_cmp);
+    let least = f64::max(0.012, 4.0 * sorted[BINS / 2]);
+    let candidates = (-100..=100).map(|k| f64::from(k) / DEGREE).filter_map(|angle| {
+        let here = around(angle, 0.0);
+        let peak = here > least && here >= around(angle, 2.0);
+        let cuts = around(angle + 90.0, 10.0).min(around(angle - 90.0, 10.0));
+        peak.then_some(((1.0 - (angle / 60.0).powi(2)) * (here + 3.0 * cuts), angle))
     });
-    // Among the peaks the larger ones count more, and so do those close to the opening.
-    let score = |k: usize, d: f64| {
-        let t = (k as f64 - f64::from(RANGE)) * BIN / 45.0;
-        d * (1.0 - t * t).max(0.0)
-    };
-    let (k, _) = peak.max_by(|a, b| score(a.0, *a.1).total_cmp(&score(b.0, *b.1)))?;
-    let mut angle = (k as f64 - f64::from(RANGE)) * BIN;
+    let (_, mut angle) = candidates.max_by(|a, b| a.0.total_cmp(&b.0))?;
     for _ in 0..50 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for (a, area) in &faces {
@@ -272,6 +266,15 @@ fn flange_aside(shape: &Shape, [x, y, z]: [Vector3; 3], middle: &Vector3, width:
 pub(crate) fn propose_tray(shape: &Shape) -> Result<Proposal, String> {
     let mut warnings = Vec::new();
     let flat = plate_normal(shape).ok_or("no flat plate was found")?;
+    let [along, all] = [0.99, -1.0].map(|least| {
+        shape.samples.iter().filter(|s| s.normal.dot(&flat).abs() > least).map(|s| s.area).sum::<f64>()
+    });
+    if along < 0.15 * all {
+        return Err(format!(
+            "no flat plate was found: the flattest direction has {:.0} % of the surface, a tray has 15 and more",
+            100.0 * along / all
+        ));
+    }
     let (y, plate) = plate(shape, &flat)?;
     let round: Vec<Vector3> = {
         let u = crate::frame::square_to(&y);
@@ -417,8 +420,12 @@ fn plate(shape: &Shape, flat: &Vector3) -> Result<(Vector3, PlateOf), String> {
     let (bottom, ceiling) = shape.reach(&y);
     let count = (((ceiling - bottom) / 0.2) as i32).clamp(1, 5_000);
     let heights = (0..=count).map(|k| bottom + (ceiling - bottom) * f64::from(k) / f64::from(count));
-    let mut top =
-        heights.map(|h| (density(h), h)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(ceiling, |(_, h)| h);
+    // Of faces of like size the uppermost: a hollow tray has some inside.
+    let all: Vec<(f64, f64)> = heights.map(|h| (density(h), h)).collect();
+    let most = all.iter().map(|(d, _)| *d).fold(0.0, f64::max);
+    let last = all.iter().rposition(|(d, _)| *d > 0.35 * most).unwrap_or(all.len() - 1);
+    let near = all.iter().skip(last.saturating_sub(3)).take(4);
+    let mut top = near.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(ceiling, |(_, h)| *h);
     for _ in 0..50 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for (at, area) in &up {

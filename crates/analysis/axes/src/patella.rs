@@ -23,6 +23,10 @@ pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
             "it is not flat enough to tell front and back (spreads of {a:.1}, {b:.1} and {c:.1} mm)"
         ));
     }
+    let (low, high) = shape.bounds();
+    if (high - low).max() > 75.0 {
+        warnings.push(format!("it is {:.0} mm long; is this a patella?", (high - low).max()));
+    }
     let faces = [1.0, -1.0].map(|sense| Face::of(shape, sense));
     let [Some(above), Some(below)] = faces else {
         return Err("one of its faces has no surface".to_owned());
@@ -59,7 +63,14 @@ pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
     let up = apex_below(shape, &along, &across.normal, &x);
     let mut y = along * up.signum();
     if let Some(hint) = shape.hint {
-        y = along * hint.superior.dot(&along).signum();
+        let sense = hint.superior.dot(&along).signum();
+        if up * sense < -0.08 {
+            warnings.push(
+                "the scanner's frame and the shape do not agree on where the apex is; the frame was followed"
+                    .to_owned(),
+            );
+        }
+        y = along * sense;
     } else if up.abs() < 0.05 {
         warnings.push(
             "the shape does not tell well which end is the apex; look at the axes, give superior and inferior, or set frame = \"lps\""

@@ -20,6 +20,25 @@ pub(crate) struct Proposal {
     pub warnings: Vec<String>,
 }
 
+/// Why a shape suggests no axes, and what of it was found nevertheless.
+pub(crate) struct Refusal {
+    pub why: String,
+    pub marks: Marks,
+    pub features: Vec<AxesFeature>,
+}
+
+impl From<String> for Refusal {
+    fn from(why: String) -> Self {
+        Self { why, marks: Vec::new(), features: Vec::new() }
+    }
+}
+
+impl From<&str> for Refusal {
+    fn from(why: &str) -> Self {
+        why.to_owned().into()
+    }
+}
+
 impl Proposal {
     /// The frame that proposed landmarks give, by the same rules as a person's.
     pub fn of_marks(
@@ -38,22 +57,23 @@ impl Proposal {
 /// What the shape suggests.
 ///
 /// # Errors
-/// Why it suggests nothing, for a person to read.
-pub(crate) fn of(body: BodyKind, shape: &Shape) -> Result<Proposal, String> {
+/// Why it suggests nothing, for a person to read, and what was found nevertheless.
+pub(crate) fn of(body: BodyKind, shape: &Shape) -> Result<Proposal, Refusal> {
     let triangles = shape.triangles.len();
     if body != BodyKind::Other && triangles < LEAST_TRIANGLES {
         return Err(format!(
             "{triangles} triangles are too few to tell its surfaces by, at least {LEAST_TRIANGLES} are needed"
-        ));
+        )
+        .into());
     }
     let mut proposal = match body {
-        BodyKind::Femur => femur::propose(shape),
-        BodyKind::Tibia => tibia::propose(shape),
-        BodyKind::Patella => patella::propose(shape),
-        BodyKind::FemoralComponent => implants::propose_femoral(shape),
-        BodyKind::TibialTray => implants::propose_tray(shape),
+        BodyKind::Femur => femur::propose(shape)?,
+        BodyKind::Tibia => tibia::propose(shape)?,
+        BodyKind::Patella => patella::propose(shape)?,
+        BodyKind::FemoralComponent => implants::propose_femoral(shape)?,
+        BodyKind::TibialTray => implants::propose_tray(shape)?,
         BodyKind::Other => other(shape),
-    }?;
+    };
     if shape.open_edges > 0 && body != BodyKind::Other {
         proposal.warnings.push(format!(
             "the mesh is open ({} edges with one triangle): look at the axes where a part is missing",
@@ -76,7 +96,7 @@ pub(crate) fn of(body: BodyKind, shape: &Shape) -> Result<Proposal, String> {
 }
 
 /// Principal axes of the surface: y along the longest, z along the middle one.
-fn other(shape: &Shape) -> Result<Proposal, String> {
+fn other(shape: &Shape) -> Proposal {
     let mut warnings = Vec::new();
     let [a, b, c] = shape.spread;
     if b > 0.98 * a || c > 0.98 * b {
@@ -105,5 +125,5 @@ fn other(shape: &Shape) -> Result<Proposal, String> {
         .zip(shape.spread)
         .map(|((axis, name), s)| figures::line(name, &(axis * -s), &(axis * s)))
         .collect();
-    Ok(Proposal { frame, marks: Vec::new(), features, warnings })
+    Proposal { frame, marks: Vec::new(), features, warnings }
 }

@@ -4,7 +4,7 @@ use biplane_geometry::Vector3;
 
 use crate::frame::square_to;
 use crate::section::{Section, sections};
-use crate::shape::Shape;
+use crate::shape::{Shape, half_sphere};
 
 /// A shaft's axis.
 #[derive(Debug, Clone)]
@@ -62,26 +62,23 @@ fn levels(shape: &Shape, direction: &Vector3, from: f64, to: f64) -> Vec<(f64, S
 /// lie, if that is known.
 pub(crate) fn cut(shape: &Shape, towards: Option<Vector3>) -> Option<Shaft> {
     let allowed = |d: &Vector3| towards.is_none_or(|t| t.dot(d) > 0.55);
-    let mut scores: Vec<(f64, Vector3)> = Vec::new();
-    let steps = [-1.0, 0.0, 1.0];
-    for x in steps {
-        for y in steps {
-            for z in steps {
-                if let Some(d) = Vector3::new(x, y, z).try_normalize(0.5)
-                    && allowed(&d)
-                {
-                    scores.push((likeness(shape, &d), d));
-                }
-            }
-        }
-    }
-    scores.extend(towards.map(|t| (likeness(shape, &t), t)));
+    let coarse = shape.coarse();
+    let quick = coarse.as_ref().unwrap_or(shape);
+    let own = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let mut scores: Vec<(f64, Vector3)> = own
+        .into_iter()
+        .chain(half_sphere(60))
+        .flat_map(|d| [d, -d])
+        .filter(|d| allowed(d))
+        .map(|d| (likeness(quick, &d), d))
+        .collect();
+    scores.extend(towards.map(|t| (likeness(quick, &t), t)));
     scores.sort_by(|a, b| b.0.total_cmp(&a.0));
     // The best of different directions, each made better by small turns.
     let mut best: Vec<(f64, Vector3)> = Vec::new();
     for (score, d) in &scores {
         if best.len() < 4 && best.iter().all(|(_, b)| b.dot(d) < 0.9) {
-            best.push(climb(shape, (*score, *d), &allowed));
+            best.push(climb(quick, (*score, *d), &allowed));
         }
     }
     best.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -94,7 +91,8 @@ pub(crate) fn cut(shape: &Shape, towards: Option<Vector3>) -> Option<Shaft> {
     let (from, to) = of_cut(shape, &direction)?;
     let mut shaft = line(shape, direction, from, to)?;
     shaft.margin = if towards.is_some() { 1.0 } else { score - next };
-    Some(shaft)
+    // Neither alone nor long: any end might be it.
+    (shaft.margin > 0.15 || shaft.length() > 0.5 * shaft.radius).then_some(shaft)
 }
 
 /// Turns a direction in ever smaller steps to where the likeness is largest.

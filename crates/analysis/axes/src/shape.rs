@@ -3,6 +3,8 @@
 //! Its centroid is the origin and its principal axes are the axes ([`crate::moments`]). A left body is mirrored first and is a right
 //! one from then on.
 
+use std::f64::consts::PI;
+
 use biplane_artifact::{BodyAxes, BodyKind, Side};
 use biplane_geometry::{Mesh, Vector3};
 use nalgebra::Matrix3;
@@ -18,6 +20,16 @@ pub(crate) struct Sample {
     pub normal: Vector3,
     /// A third of the triangle's, mm^2.
     pub area: f64,
+}
+
+/// Directions over a half sphere, spread evenly (a Fibonacci lattice).
+pub(crate) fn half_sphere(count: i32) -> impl Iterator<Item = Vector3> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    (0..count).map(move |k| {
+        let z = (f64::from(k) + 0.5) / f64::from(count);
+        let (r, a) = ((1.0 - z * z).sqrt(), golden * f64::from(k));
+        Vector3::new(r * a.cos(), r * a.sin(), z)
+    })
 }
 
 /// A right body in its own frame.
@@ -49,6 +61,19 @@ fn mirror(v: &Vector3) -> Vector3 {
     Vector3::new(-v.x, v.y, v.z)
 }
 
+fn samples(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Vec<Sample> {
+    triangles
+        .iter()
+        .flat_map(|t| {
+            let [a, b, c] = t.map(|v| vertices[v as usize]);
+            let normal = (b - a).cross(&(c - a));
+            let size = normal.norm();
+            [a, b, c].map(|at| Sample { at, normal: normal / size, area: size / 6.0 })
+        })
+        .filter(|s| s.area > 0.0)
+        .collect()
+}
+
 impl Shape {
     pub fn of(mesh: &Mesh, side: Side, frame: ModelFrame) -> Self {
         let mirrored = side == Side::Left;
@@ -62,16 +87,7 @@ impl Shape {
         let moments = moments::moments(&vertices, &triangles);
         let back = moments.axes.transpose();
         vertices.iter_mut().for_each(|v| *v = back * (*v - moments.centroid));
-        let samples = triangles
-            .iter()
-            .flat_map(|t| {
-                let [a, b, c] = t.map(|v| vertices[v as usize]);
-                let normal = (b - a).cross(&(c - a));
-                let size = normal.norm();
-                [a, b, c].map(|at| Sample { at, normal: normal / size, area: size / 6.0 })
-            })
-            .filter(|s| s.area > 0.0)
-            .collect();
+        let samples = samples(&vertices, &triangles);
         let hint = (frame == ModelFrame::Lps)
             .then(|| Hint { superior: back * Vector3::z(), anterior: back * -Vector3::y() });
         Self {
@@ -121,6 +137,32 @@ impl Shape {
             features,
             warnings: found.warnings,
         }
+    }
+
+    /// The same body with fewer triangles, for searches that cut it often: vertices of one cell of a cubic grid become one. Its sections
+    /// stay closed where they were.
+    pub fn coarse(&self) -> Option<Self> {
+        const MOST: usize = 12_000;
+        if self.triangles.len() <= MOST {
+            return None;
+        }
+        let (low, high) = self.bounds();
+        let side = (high - low).norm() / 70.0;
+        let cell = |v: &Vector3| [0, 1, 2].map(|k| ((v[k] - low[k]) / side).floor() as i64);
+        let mut order: Vec<([i64; 3], u32)> =
+            self.vertices.iter().enumerate().map(|(i, v)| (cell(v), i as u32)).collect();
+        order.sort_unstable();
+        let mut number = vec![0; self.vertices.len()];
+        let mut vertices: Vec<Vector3> = Vec::new();
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            let sum: Vector3 = group.iter().map(|(_, i)| self.vertices[*i as usize]).sum();
+            group.iter().for_each(|(_, i)| number[*i as usize] = vertices.len() as u32);
+            vertices.push(sum / group.len() as f64);
+        }
+        let triangles = self.triangles.iter().map(|t| t.map(|v| number[v as usize]));
+        let triangles: Vec<[u32; 3]> = triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        let samples = samples(&vertices, &triangles);
+        Some(Self { vertices, triangles, samples, ..*self })
     }
 
     /// Smallest and largest coordinates along the own axes.

@@ -10,7 +10,7 @@ use crate::figures;
 use crate::frame::Frame;
 use crate::landmarks::{self, Given};
 use crate::points;
-use crate::proposal::{self, Proposal};
+use crate::proposal::{self, Proposal, Refusal};
 use crate::shape::Shape;
 
 inputs! {
@@ -242,14 +242,14 @@ pub(crate) struct Found {
 fn settle(
     body: BodyKind,
     given: &Given,
-    proposed: Result<Proposal, String>,
+    proposed: Result<Proposal, Refusal>,
     any_given: bool,
     shape: &Shape,
 ) -> Result<Found, AxesError> {
     let name = body_name(body);
     if !any_given {
-        let proposal =
-            proposed.map_err(|why| AxesError::Shape { body: name, why, sets: landmarks::sets(body) })?;
+        let sets = || landmarks::sets(body);
+        let proposal = proposed.map_err(|r| AxesError::Shape { body: name, why: r.why, sets: sets() })?;
         return Ok(Found {
             frame: proposal.frame,
             source: AxesSource::Shape,
@@ -282,42 +282,51 @@ fn settle(
             sets: landmarks::sets(body),
         }
     };
-    let (solved, proposal) = match (alone, proposed) {
-        (Some(solved), proposed) => {
-            if let Ok(p) = &proposed {
-                warnings.extend(against(&solved.frame, p));
-            }
-            (solved, None)
-        }
-        (None, Err(why)) => return Err(lacking(&format!(", and the shape does not fill in: {why}"))),
-        (None, Ok(proposal)) => {
-            // A word that is nearly a landmark is one misspelt: to go on without it would be to overrule the person.
-            if given.unknown.iter().any(|(_, nearest)| nearest.is_some()) {
-                return Err(lacking(""));
-            }
-            let Some(solved) = landmarks::solve(body, given, &proposal.marks)? else {
-                return Err(lacking(", and the shape does not fill them in"));
-            };
-            let idle: Vec<&str> =
-                given.marks.iter().map(|(n, _)| *n).filter(|n| !solved.taken.contains(n)).collect();
-            if !idle.is_empty() {
-                return Err(lacking(&format!("; {} alone fixes nothing", idle.join(", "))));
-            }
-            (solved, Some(proposal))
-        }
-    };
     let mut features: Vec<AxesFeature> = Vec::new();
-    if let Some(proposal) = proposal {
+    let solved = if let Some(solved) = alone {
+        if let Ok(p) = &proposed {
+            warnings.extend(against(&solved.frame, p));
+        }
+        solved
+    } else {
+        // A word that is nearly a landmark is one misspelt: to go on without it would be to overrule the person.
+        if given.unknown.iter().any(|(_, nearest)| nearest.is_some()) {
+            return Err(lacking(""));
+        }
+        let marks = match &proposed {
+            Ok(proposal) => &proposal.marks,
+            Err(refusal) => &refusal.marks,
+        };
+        let Some(solved) = landmarks::solve(body, given, marks)? else {
+            return Err(lacking(&match proposed {
+                Ok(_) => ", and the shape does not fill them in".to_owned(),
+                Err(refusal) => format!(", and the shape does not fill in: {}", refusal.why),
+            }));
+        };
+        let idle: Vec<&str> =
+            given.marks.iter().map(|(n, _)| *n).filter(|n| !solved.taken.contains(n)).collect();
+        if !idle.is_empty() {
+            return Err(lacking(&format!("; {} alone fixes nothing", idle.join(", "))));
+        }
         let from_person =
             if solved.taken.is_empty() { "the origin".to_owned() } else { solved.taken.join(", ") };
         warnings.push(format!(
             "from the landmarks: {from_person}; proposed from the shape: {}",
             solved.proposed.join(", ")
         ));
-        warnings.extend(against(&solved.frame, &proposal));
-        warnings.extend(proposal.warnings);
-        features.extend(proposal.features);
-    }
+        match proposed {
+            Ok(proposal) => {
+                warnings.extend(against(&solved.frame, &proposal));
+                warnings.extend(proposal.warnings);
+                features.extend(proposal.features);
+            }
+            Err(refusal) => {
+                warnings.push(format!("the shape alone gives no axes: {}", refusal.why));
+                features.extend(refusal.features);
+            }
+        }
+        solved
+    };
     features.extend(given.marks.iter().map(|(n, at)| figures::point(n, at)));
     features.extend(given.origin.iter().map(|at| figures::point("origin", at)));
     features.extend(solved.lines.iter().map(|(axis, a, b)| figures::line(axis.name(), a, b)));

@@ -11,9 +11,9 @@ use crate::frame::square_to;
 use crate::shape::Shape;
 
 /// Places that are mirrored.
-const MIRRORED: usize = 2_500;
+const MIRRORED: usize = 1_500;
 /// Places that they are held against.
-const HELD: usize = 24_000;
+const HELD: usize = 12_000;
 
 /// A mirror plane: `normal . p = height`.
 #[derive(Debug, Clone)]
@@ -33,11 +33,14 @@ struct Place {
 
 /// A body's surface as evenly spread places in cubic cells.
 pub(crate) struct Places {
-    cells: Vec<(u64, Place)>,
+    /// Cell by cell, the first coordinate running fastest.
+    held: Vec<Place>,
+    /// Where each cell begins in `held`, and where the last one ends.
+    begins: Vec<u32>,
     mirrored: Vec<Place>,
     low: Vector3,
     side: f64,
-    count: [u64; 3],
+    count: [usize; 3],
     size: f64,
 }
 
@@ -47,38 +50,41 @@ impl Places {
         let size = (high - low).norm();
         let side = size / 30.0;
         let low = low - Vector3::repeat(2.0 * side);
-        let count = [0, 1, 2].map(|k| ((high[k] - low[k]) / side).ceil() as u64 + 3);
-        let mut places =
-            Self { cells: Vec::new(), mirrored: spread(shape, MIRRORED), low, side, count, size };
-        places.cells =
-            spread(shape, HELD).into_iter().filter_map(|p| Some((places.cell(&p.at)?, p))).collect();
-        places.cells.sort_by_key(|(cell, _)| *cell);
+        // At most 30 cells and a rim along each axis, whatever the body's size.
+        let count = [0, 1, 2].map(|k| ((high[k] - low[k]) / side).ceil() as usize + 3);
+        let mirrored = spread(shape, MIRRORED);
+        let mut places = Self { held: Vec::new(), begins: Vec::new(), mirrored, low, side, count, size };
+        let mut held: Vec<(usize, Place)> = spread(shape, HELD)
+            .into_iter()
+            .filter_map(|p| Some((places.number(places.cell(&p.at)?), p)))
+            .collect();
+        held.sort_by_key(|(cell, _)| *cell);
+        let cells: usize = count.iter().product();
+        places.begins = (0..=cells).map(|c| held.partition_point(|(cell, _)| *cell < c) as u32).collect();
+        places.held = held.into_iter().map(|(_, p)| p).collect();
         places
     }
 
-    fn corner(&self, at: &Vector3) -> Option<[u64; 3]> {
+    /// The cell of a place, if it has neighbours on all sides.
+    fn cell(&self, at: &Vector3) -> Option<[usize; 3]> {
         let c = (at - self.low) / self.side;
         let inside = (0..3).all(|k| c[k] >= 1.0 && c[k] < self.count[k] as f64 - 1.0);
-        inside.then(|| [0, 1, 2].map(|k| c[k] as u64))
+        inside.then(|| [0, 1, 2].map(|k| c[k] as usize))
     }
 
-    fn number(&self, [i, j, k]: [u64; 3]) -> u64 {
+    fn number(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.count[1] + j) * self.count[0] + i
-    }
-
-    fn cell(&self, at: &Vector3) -> Option<u64> {
-        self.corner(at).map(|c| self.number(c))
     }
 
     /// The nearest place that faces alike, within a cell's side.
     fn nearest(&self, p: &Place) -> Option<&Place> {
-        let [i, j, k] = self.corner(&p.at)?;
+        let [i, j, k] = self.cell(&p.at)?;
         let mut best: Option<(f64, &Place)> = None;
         for z in k - 1..=k + 1 {
             for y in j - 1..=j + 1 {
-                let first = self.cells.partition_point(|(c, _)| *c < self.number([i - 1, y, z]));
-                let last = self.number([i + 1, y, z]);
-                for (_, q) in self.cells.iter().skip(first).take_while(|(c, _)| *c <= last) {
+                let row = self.number([i - 1, y, z]);
+                let (first, last) = (self.begins[row] as usize, self.begins[row + 3] as usize);
+                for q in &self.held[first..last] {
                     let far = (q.at - p.at).norm_squared();
                     if best.is_none_or(|(b, _)| far < b) && q.normal.dot(&p.normal) > 0.5 {
                         best = Some((far, q));
@@ -124,11 +130,18 @@ impl Places {
             })
             .collect();
         first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        first.truncate(10);
+        first.truncate(12);
         let mut rough: Vec<Mirror> = first.into_iter().map(|m| self.refined(m, square, 5, 20)).collect();
         rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        rough.truncate(2);
-        rough.into_iter().map(|m| self.refined(m, square, 1, 60)).min_by(|a, b| a.cost.total_cmp(&b.cost))
+        // Most starts lead to one plane: it is made better once.
+        let mut apart: Vec<Mirror> = Vec::new();
+        for m in rough {
+            if apart.len() < 2 && apart.iter().all(|a| a.normal.dot(&m.normal).abs() < 0.995) {
+                apart.push(m);
+            }
+        }
+        let fine = apart.into_iter().map(|m| self.refined(m, square, 1, 30));
+        fine.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
     /// With every `stride`th place, in at most `rounds` steps.
@@ -166,11 +179,11 @@ impl Places {
             m.normal = (m.normal + u * step.x + v * step.y).normalize();
             m.height += step.z;
             scale = (0.8 * scale).max((squares / f64::max(total, 1e-9)).sqrt().max(self.size * 5e-4));
-            if step.norm() < 1e-9 {
+            if step.norm() < 1e-8 {
                 break;
             }
         }
-        m.cost = self.cost(&m, stride);
+        m.cost = self.cost(&m, 1);
         m
     }
 }

@@ -49,6 +49,9 @@ pub(crate) fn propose(shape: &Shape) -> Result<Proposal, String> {
         warnings
             .push(format!("the plateau stands {slope:.0} degrees off square to the shaft; look at the axes"));
     }
+    if plane.rms > 0.03 * top.width {
+        warnings.push(format!("the plateau is no plane: {:.1} mm rms off it; is this a tibia?", plane.rms));
+    }
     // The middle of the rim's section, carried up along y to the plateau.
     let to_plane = |p: &Vector3| p + up * ((plane.centre - p).dot(&plane.normal) / up.dot(&plane.normal));
     let centre = to_plane(&top.middle);
@@ -107,8 +110,8 @@ fn stand(shape: &Shape) -> Result<(Shaft, Vector3), String> {
         }
         return Ok((shaft, up));
     }
-    let shaft =
-        shaft::cut(shape, shape.hint.map(|h| -h.superior)).ok_or("no shaft was found at any of its ends")?;
+    let shaft = shaft::cut(shape, shape.hint.map(|h| -h.superior))
+        .ok_or("the shape does not tell which of its ends is cut through the shaft")?;
     let up = -shaft.direction;
     Ok((shaft, up))
 }
@@ -194,10 +197,10 @@ impl Top {
             all.iter().sum::<f64>() / all.len().max(1) as f64
         };
         let notch = (depth(&-forward) - depth(&forward)) / self.width;
-        let vote = 1.5 * crest + notch + 0.5 * overhang;
+        let vote = 1.5 * crest + notch + 0.25 * overhang;
         if let Some(hint) = shape.hint {
             let sense = hint.anterior.dot(&forward).signum();
-            if sense * vote < -0.08 {
+            if sense * vote < -0.05 {
                 warnings.push(
                     "the scanner's frame and the shape do not agree on what is in front; the frame was followed"
                         .to_owned(),
@@ -208,11 +211,14 @@ impl Top {
         if vote.abs() < 0.03 {
             return Err("its front and back look alike (neither tuberosity nor notch)".to_owned());
         }
-        if notch * crest < 0.0 && notch.abs().min(crest.abs()) > 0.02 || vote.abs() < 0.08 {
+        if notch * crest < 0.0 && notch.abs().min(crest.abs()) > 0.02 || vote.abs() < 0.06 {
             warnings.push(
                 "the shape does not tell well what is in front and what is behind; look at the axes, or give landmarks"
                     .to_owned(),
             );
+        }
+        if crest.abs() < 0.01 {
+            warnings.push("no tuberosity stands out below the plateau; is this a tibia?".to_owned());
         }
         Ok(forward * vote.signum())
     }
@@ -222,6 +228,8 @@ impl Top {
 struct Plane {
     centre: Vector3,
     normal: Vector3,
+    /// Of the places that count, mm.
+    rms: f64,
 }
 
 /// The plane of the articular surfaces: what faces up on both sides of the eminence, robustly.
@@ -242,8 +250,11 @@ fn plateau(shape: &Shape, up: &Vector3, top: &Top) -> Option<Plane> {
     if total < 0.03 * top.width * top.width {
         return None;
     }
-    let mut plane =
-        Plane { centre: on_top.iter().map(|s| s.at * s.area).sum::<Vector3>() / total, normal: *up };
+    let mut plane = Plane {
+        centre: on_top.iter().map(|s| s.at * s.area).sum::<Vector3>() / total,
+        normal: *up,
+        rms: 0.0,
+    };
     let mut scale = 0.04 * top.width;
     for _ in 0..60 {
         let (mut sum, mut weight, mut squares) = (Vector3::zeros(), 0.0, 0.0);
@@ -270,7 +281,7 @@ fn plateau(shape: &Shape, up: &Vector3, top: &Top) -> Option<Plane> {
         let normal = Vector3::from(eigen.eigenvectors.column(least));
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };
         let moved = (normal - plane.normal).norm() + (centre - plane.centre).norm();
-        plane = Plane { centre, normal };
+        plane = Plane { centre, normal, rms: (squares / weight).sqrt() };
         scale = (0.8 * scale).max((squares / weight).sqrt().max(0.004 * top.width));
         if moved < 1e-10 {
             break;
