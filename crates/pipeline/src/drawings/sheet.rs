@@ -107,7 +107,7 @@ fn warning_lines(warnings: &[String], most_lines: usize) -> Vec<String> {
 }
 
 /// A text in lines of at most `columns` characters, broken at spaces where there are some.
-fn wrapped(text: &str, columns: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let columns = columns.max(1);
     let mut lines = Vec::new();
     let mut line = String::new();
