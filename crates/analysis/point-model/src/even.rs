@@ -27,6 +27,8 @@ const EXACT_ROUNDS: usize = 30;
 const SETTLING: usize = 6;
 /// Rounds in which crossings are mended.
 const MENDING: usize = 6;
+/// Steps of each vertex to undo a fold.
+const UNFOLDING: usize = 4;
 /// Smallest cosine between a triangle's normals before and after a step.
 const TURN: f64 = 0.3;
 
@@ -77,21 +79,28 @@ pub(crate) fn even(
     this.settle();
     let mut mesh = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
     let mut crossings = Surface::new(&mesh).self_crossings(points);
-    for _ in 0..MENDING {
-        if crossings.is_empty() || !surface.self_crossings(1).is_empty() {
-            break;
+    if !crossings.is_empty() && surface.self_crossings(1).is_empty() {
+        for round in 0..MENDING {
+            let before = (this.mesh.clone(), this.near.clone());
+            let touched = this.widened(this.of_triangles(&crossings), round / 2);
+            if round % 2 == 0 {
+                this.release(&touched)
+            } else {
+                this.refine(&touched)
+            }
+            let met = this.meet(points).is_ok();
+            this.settle();
+            let mended = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
+            let left = Surface::new(&mended).self_crossings(points);
+            if met && left.len() < crossings.len() {
+                (mesh, crossings) = (mended, left);
+            } else {
+                (this.mesh, this.near) = before;
+            }
+            if crossings.is_empty() {
+                break;
+            }
         }
-        this.refine(&crossings);
-        if this.meet(points).is_err() {
-            break;
-        }
-        this.settle();
-        let mended = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
-        let left = Surface::new(&mended).self_crossings(points);
-        if left.len() >= crossings.len() {
-            break;
-        }
-        (mesh, crossings) = (mended, left);
     }
     Ok(mesh)
 }
@@ -354,23 +363,75 @@ impl Even<'_> {
         self.flip_to_delaunay();
     }
 
-    /// Puts more points where triangles cross, and holds them there: the sides of a thin part then lie where they should.
-    fn refine(&mut self, crossings: &[[u32; 2]]) {
+    /// The half-edges of triangles that are given as numbers of the mesh.
+    fn of_triangles(&self, pairs: &[[u32; 2]]) -> Vec<u32> {
         // As a mesh leaves them out.
         let with_area = |h: &u32| self.mesh.is_live(*h) && self.mesh.normal(*h).norm() > 0.0;
         let live: Vec<u32> = (0..self.mesh.from.len() as u32).step_by(3).filter(with_area).collect();
-        let mut edges = Vec::with_capacity(crossings.len() * 6);
-        for triangle in crossings.as_flattened() {
-            // Triangles of the mesh are those that are left, in their order.
-            let Some(&first) = live.get(*triangle as usize) else { continue };
-            for half in first..first + 3 {
-                let twin = self.mesh.twin[half as usize];
-                edges.push(if twin == NONE { half } else { half.min(twin) });
+        let mut numbers: Vec<u32> = pairs.as_flattened().to_vec();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let firsts = numbers.iter().filter_map(|n| live.get(*n as usize));
+        firsts.flat_map(|first| *first..*first + 3).collect()
+    }
+
+    /// With the triangles around them, and around those, as often as said.
+    fn widened(&self, mut halves: Vec<u32>, times: usize) -> Vec<u32> {
+        for _ in 0..times {
+            for half in halves.clone() {
+                self.mesh.fan(self.mesh.from[half as usize], |h| halves.extend([h, next(h), prev(h)]));
+            }
+            halves.sort_unstable();
+            halves.dedup();
+        }
+        halves
+    }
+
+    /// Takes the lines around some half-edges away: lines that are nearer to each other than points cross when they bend.
+    fn release(&mut self, halves: &[u32]) {
+        for &half in halves {
+            let mut around = Vec::with_capacity(12);
+            self.mesh.fan(self.mesh.from[half as usize], |h| around.extend([h, next(h), prev(h)]));
+            for h in around {
+                let twin = self.mesh.twin[h as usize];
+                let v = self.mesh.from[h as usize];
+                if twin != NONE {
+                    self.mesh.line[h as usize] = NONE;
+                    self.mesh.line[twin as usize] = NONE;
+                }
+                if self.mesh.hold[v as usize] != Hold::Fixed && !self.mesh.is_on_rim(v) {
+                    let at = self.mesh.at[v as usize];
+                    self.mesh.hold[v as usize] = Hold::Free;
+                    self.near[v as usize] = self.surface.closest(&at).triangle;
+                }
             }
         }
-        edges.sort_unstable();
-        edges.dedup();
-        for half in edges {
+        // A fold is not undone by steps that turn nothing over: to the middles of their neighbours, whatever turns.
+        for _ in 0..UNFOLDING {
+            for &half in
+                halves.iter().filter(|h| self.mesh.hold[self.mesh.from[**h as usize] as usize] == Hold::Free)
+            {
+                let v = self.mesh.from[half as usize];
+                let (mut sum, mut count) = (Vector3::zeros(), 0.0);
+                self.mesh.ring(v, |n| {
+                    sum += self.mesh.at[n as usize].coords;
+                    count += 1.0;
+                });
+                let found = self.surface.closest_near(&Point3::from(sum / count), self.near[v as usize]);
+                self.mesh.at[v as usize] = found.at;
+                self.near[v as usize] = found.triangle;
+            }
+        }
+        self.collapse_short();
+    }
+
+    /// Puts more points where triangles cross, and holds them there: the sides of a thin part then lie where they should.
+    fn refine(&mut self, halves: &[u32]) {
+        for &half in halves {
+            let twin = self.mesh.twin[half as usize];
+            if twin != NONE && twin < half && halves.contains(&twin) {
+                continue;
+            }
             self.split(half);
             for v in [self.mesh.from[half as usize], self.mesh.to(half)] {
                 self.mesh.hold[v as usize] = Hold::Fixed;
