@@ -13,6 +13,7 @@ use biplane::results::pose_line;
 use biplane::study::Study;
 use biplane::tables::{PoseTable, same_frame};
 use biplane_acquisition::meshes::{LengthUnit, read_mesh};
+use biplane_stage::Store;
 use biplane_validation::{
     Budgets, Distribution, Effort, Lab, STARTS, SceneError, StartOffset, Table, noise, read_body,
     read_reference, sections, seen_from,
@@ -219,7 +220,8 @@ fn compare(
     limit_deg: f64,
 ) -> Result<bool, Box<dyn Error>> {
     let prepared = Prepared::of(Study::load(pipeline)?)?;
-    let (_, mesh) = read_body(&prepared, pipeline, body)?;
+    let store = Store::open(&prepared.study.hidden())?;
+    let (_, mesh) = read_body(&prepared, &store, pipeline, body)?;
     let results = prepared.study.output.join("poses.csv");
     let table = PoseTable::read(&results).map_err(|e| SceneError::Mesh(e.to_string()))?;
     let known = read_reference(reference)?;
@@ -247,7 +249,8 @@ fn relative(
     frames: &str,
 ) -> Result<bool, Box<dyn Error>> {
     let prepared = Prepared::of(Study::load(pipeline)?)?;
-    let (_, mesh) = read_body(&prepared, pipeline, body)?;
+    let store = Store::open(&prepared.study.hidden())?;
+    let (_, mesh) = read_body(&prepared, &store, pipeline, body)?;
     let table = PoseTable::read(&prepared.study.output.join("poses.csv"))
         .map_err(|e| SceneError::Mesh(e.to_string()))?;
     let centroid = mesh.area_centroid();
@@ -306,7 +309,8 @@ fn starts(trial: &str, bodies: &[String], offset: &StartOffset) -> Result<bool, 
             eprintln!("{text}: expected BODY=MESH.stl,REFERENCE.csv");
             return Ok(false);
         };
-        let mesh = read_mesh(mesh, LengthUnit::Millimetres).map_err(|e| SceneError::Mesh(e.to_string()))?;
+        let mesh =
+            read_mesh(mesh, Some(LengthUnit::Millimetres)).map_err(|e| SceneError::Mesh(e.to_string()))?;
         let centroid = mesh.model.0.area_centroid();
         for (index, (label, pose)) in read_reference(Path::new(reference))?.iter().enumerate() {
             // Bodies of one frame are off in different directions.

@@ -246,7 +246,7 @@ The store, .biplane/ beside the pipeline file, keeps what was computed; deleting
     /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses to fill in.
     #[command(
         after_help = "It looks for: folders of pictures side by side (one a fluoroscope), calibrations with the fluoroscope's
-name in theirs, STL meshes, distortion tables, tables of start poses. What it does not find, it says.
+name in theirs, meshes, distortion tables, tables of start poses. What it does not find, it says.
 No file is overwritten. Then: read pipeline.toml through, fill in starts.csv, `biplane plan`, `biplane run`."
     )]
     Init {

@@ -4,10 +4,14 @@
 //! keep their place in the file ([`Located`]), so that what [`crate::study`] finds wrong points at its line. `flatten`
 //! and tagged enums are avoided: they lose those places.
 
+use biplane_axes::AxesParams;
 use biplane_contour::ContourParams;
 use biplane_distortion::DistortionParams;
 use biplane_environment::EnvironmentParams;
+use biplane_label_surface::LabelSurfaceParams;
+use biplane_lofting::LoftParams;
 use biplane_optimisation::MatchParams;
+use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentParams, TraceParams};
 use biplane_slices::SlicesParams;
 use biplane_spots::{Look, SpotSettings};
@@ -210,19 +214,44 @@ impl Origin {
     }
 }
 
-/// `[[body]]`: a bone or an implant part.
+/// `[[body]]`: a bone or an implant part. Its surface comes either from a `mesh` file, or from the `slices` of a volume.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySection {
     /// Name of the body, as start poses and results call it.
     #[schemars(with = "String")]
     pub name: Located,
-    /// Its surface: an STL file.
-    #[schemars(with = "String")]
-    pub mesh: Located,
-    /// Unit of the mesh's coordinates.
-    #[serde(default)]
-    pub units: Units,
+    /// Its surface: an STL, PLY, OBJ, OFF or VTK file.
+    #[schemars(with = "Option<String>")]
+    pub mesh: Option<Located>,
+    /// Unit of the mesh's coordinates. Not given, a mesh whose size can only be mm is taken as mm; of any other the run asks.
+    pub units: Option<Units>,
+    /// Instead of a mesh: the name of a `[[slices]]` table. The bone's contours become its surface, in the scanner's frame.
+    #[schemars(with = "Option<String>")]
+    pub slices: Option<Located>,
+    /// With `slices`: how contours become a surface.
+    #[schemars(with = "Option<LoftParams>")]
+    pub loft: Option<toml::Spanned<LoftParams>>,
+    /// With `slices` that are found by a label: the surface is made straight from the map of labels, not from contours. Its `label`
+    /// need not be given again.
+    #[schemars(with = "Option<LabelSurfaceParams>")]
+    pub label_surface: Option<toml::Spanned<LabelSurfaceParams>>,
+    /// How many points the model has, and how they are spread. Not given, a mesh file's own vertices are matched as they are, and a
+    /// surface from slices gets 15,000 points spread evenly.
+    #[schemars(with = "Option<ModelParams>")]
+    pub model: Option<toml::Spanned<ModelParams>>,
+    /// Its local coordinate system: what it is and of which side, `axes = { body = "femur", side = "left" }`.
+    #[schemars(with = "Option<AxesParams>")]
+    pub axes: Option<toml::Spanned<AxesParams>>,
+    /// Landmarks that a person placed on it, or an origin and points on its axes (CSV, `.fcsv`, `.mrk.json`): they win over what the
+    /// shape proposes. A file `edits/landmarks/NAME.csv` wins over this one.
+    #[schemars(with = "Option<String>")]
+    pub landmarks: Option<Located>,
+    /// Another mesh of the same body in the same frame, to be compared with: its distance map is drawn.
+    #[schemars(with = "Option<String>")]
+    pub reference: Option<Located>,
+    /// Unit of the reference's coordinates.
+    pub reference_units: Option<Units>,
 }
 
 /// Unit of length of a mesh file.

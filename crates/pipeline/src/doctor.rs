@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, Calibrated, calibrate};
 use crate::logging::Progress;
+use crate::models::{self, BodyModel};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{Standing, Steps, read_stored};
 use crate::study::Study;
@@ -75,9 +76,11 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
     let context = Context::new();
     let (calibrated, _) = calibrate(&prepared, &store, &context, Way::Run(Vec::new()));
     let calibrated = calibrated?.unwrap_or_default();
+    let models = models::look::look(&prepared, &store, &context, &mut Vec::new());
     let steps = Steps {
         prepared: &prepared,
         calibrations: &calibrated.calibrations,
+        models: &models,
         store: &store,
         context: &context,
     };
@@ -88,12 +91,11 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
         let known: Vec<&str> = study.trials.iter().map(|t| t.name.as_str()).collect();
         return Err(DoctorError::Trial { wanted: name.to_owned(), known: known.join(", ") });
     }
-    let meshes: Vec<RimMesh> = prepared
-        .meshes
-        .iter()
-        .map(|m| m.load().map(|mesh| RimMesh::new(&mesh.0)))
-        .collect::<Result<_, _>>()
-        .map_err(|e| InputErrors(vec![e]))?;
+    let rim = |model: &Option<BodyModel>| {
+        model.as_ref().map(|m| m.load().map(|mesh| RimMesh::new(&mesh.0))).transpose()
+    };
+    let meshes: Vec<Option<RimMesh>> =
+        models.iter().map(rim).collect::<Result<_, _>>().map_err(|e| InputErrors(vec![e]))?;
     let mut found = Diagnosis { text: String::new(), well: true };
     for trial in wanted {
         let looked = Looking { steps: &steps, calibrated: &calibrated, meshes: &meshes, trial };
@@ -114,7 +116,8 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
 struct Looking<'a> {
     steps: &'a Steps<'a>,
     calibrated: &'a Calibrated,
-    meshes: &'a [RimMesh],
+    /// None of a body whose model is not there: it has no match either.
+    meshes: &'a [Option<RimMesh>],
     trial: usize,
 }
 
@@ -189,7 +192,9 @@ impl Looking<'_> {
             let pose = Pose::from(found.pose);
             let search = self.study().matching.search();
             let pair = views.as_ref().and_then(|(_, v)| v.get(..2));
-            let disagreement = pair.and_then(|pair| disagreement(&self.meshes[*body], pair, &pose, &search));
+            let mesh = self.meshes[*body].as_ref();
+            let disagreement =
+                pair.zip(mesh).and_then(|(pair, mesh)| disagreement(mesh, pair, &pose, &search));
             found_here.push(Matched { body: *body, pose, found: Match::clone(&found), disagreement });
         }
         Some(found_here)
@@ -366,7 +371,8 @@ impl Looking<'_> {
             all.fixed_view_mut::<2, 9>(0, 9 * view).copy_from(&own);
             Some(all)
         };
-        let found = pose_covariance_of_calibration(&self.meshes[body], &seen, pose, &covariance, derivative)?;
+        let mesh = self.meshes[body].as_ref()?;
+        let found = pose_covariance_of_calibration(mesh, &seen, pose, &covariance, derivative)?;
         let sigma = |from: usize| (from..from + 3).map(|i| found[(i, i)]).sum::<f64>().sqrt();
         Some([sigma(0), sigma(3)])
     }

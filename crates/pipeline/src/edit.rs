@@ -19,6 +19,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::calibrate::{CalibrateError, calibrate};
 use crate::diagnostics::{meant, slashes};
+use crate::models;
 use crate::overlay::COLOURS;
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{Standing, Steps, read_stored};
@@ -100,7 +101,8 @@ pub fn edit(study: Study, wish: &Wish<'_>) -> Result<String, EditCommandError> {
     let context = Context::new();
     let calibrated = calibrate(&prepared, &store, &context, Way::Look(Vec::new())).0?.unwrap_or_default();
     let (study, calibrations) = (&prepared.study, &calibrated.calibrations);
-    let steps = Steps { prepared: &prepared, calibrations, store: &store, context: &context };
+    let models = &models::look::look(&prepared, &store, &context, &mut Vec::new());
+    let steps = Steps { prepared: &prepared, calibrations, models, store: &store, context: &context };
     known("trial", wish.trial, study.trials.iter().map(|t| t.name.as_str()), |a, b| a == b)?;
     let of_trial = |job: &&Job| wish.trial.is_none_or(|name| study.trials[job.trial].name == name);
     let jobs: Vec<&Job> = prepared.jobs.iter().filter(of_trial).collect();

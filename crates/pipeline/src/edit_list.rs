@@ -33,7 +33,8 @@ pub fn list(study: Study) -> Result<(String, bool), EditListError> {
     let prepared = Prepared::of(study)?;
     let store = Store::open(&prepared.study.hidden())?;
     let context = Context::new();
-    let steps = Steps { prepared: &prepared, calibrations: &[], store: &store, context: &context };
+    let steps =
+        Steps { prepared: &prepared, calibrations: &[], models: &[], store: &store, context: &context };
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for job in &prepared.jobs {
         for slot in

@@ -11,6 +11,7 @@ use biplane_artifact::EditedContour;
 use biplane_stage::Hashed;
 
 use crate::diagnostics::meant;
+use crate::models::LANDMARKS;
 use crate::prepare::Job;
 use crate::slices::SLICES;
 use crate::sources::FrameFacts;
@@ -58,6 +59,10 @@ pub fn find(study: &Study, jobs: &mut [Job]) -> Vec<(PathBuf, String)> {
         let name = file_name(&path);
         if path.is_dir() && name == SLICES && !study.slices.is_empty() {
             // What a person drew in slices: `crate::slices::drawn`.
+            continue;
+        }
+        if path.is_dir() && name == LANDMARKS && study.bodies.iter().any(|b| b.axes.is_some()) {
+            // A person's landmarks: `crate::models::landmarks`.
             continue;
         }
         if path.is_dir() {

@@ -3,7 +3,7 @@
 //! What files are is told by what they hold; which belong together is guessed from names, and the file says so. An
 //! existing file is never overwritten. Where there are no start poses, a table to fill in is written beside it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io::{Read, Write as _};
 use std::path::{Path, PathBuf};
@@ -22,6 +22,11 @@ const DEPTH: usize = 5;
 const MOST_FILES: usize = 100_000;
 /// Text files larger than this are neither calibration nor starts.
 const MOST_TEXT: u64 = 16 << 20;
+
+/// Endings of mesh files.
+const MESHES: [&str; 6] = ["stl", "ply", "obj", "off", "vtk", "vtp"];
+/// Endings of files of volumes.
+const VOLUMES: [&str; 4] = [".nrrd", ".nhdr", ".nii", ".nii.gz"];
 
 /// Why no file was written.
 #[derive(Debug, thiserror::Error)]
@@ -58,6 +63,8 @@ struct Found {
     plate_lists: Vec<String>,
     bead_lists: Vec<String>,
     meshes: Vec<FoundMesh>,
+    /// MRI, CT or maps of labels: files of volumes.
+    volumes: Vec<String>,
     starts: Vec<String>,
     /// The table of start poses that is to be filled in.
     template: Option<&'static str>,
@@ -109,12 +116,13 @@ pub fn init(folder: &Path) -> Result<String, InitError> {
         create(table, &template(&found, folder))?;
     }
     let mut said = format!(
-        "wrote {shown}: looked at {} files, found {} folder(s) of pictures, {} calibration(s), {} mesh(es), {} table(s) of \
-         start poses\n",
+        "wrote {shown}: looked at {} files, found {} folder(s) of pictures, {} calibration(s), {} mesh(es), {} volume(s), {} \
+         table(s) of start poses\n",
         found.files,
         found.pictures.len() + found.films.len(),
         found.calibrations.len(),
         found.meshes.len(),
+        found.volumes.len(),
         found.starts.len()
     );
     if let Some(table) = &table {
@@ -177,9 +185,11 @@ fn look_at(root: &Path, path: &Path, found: &mut Found) {
         } else {
             *found.pictures.entry(relative(path.parent().unwrap_or(root))).or_default() += 1;
         }
-    } else if extension == "stl" {
+    } else if is_volume(path) {
+        found.volumes.push(relative(path));
+    } else if MESHES.contains(&extension.as_str()) {
         let unit = LengthUnit::ALL.into_iter().find(|unit| {
-            read_mesh(path, *unit).is_ok_and(|m| {
+            read_mesh(path, Some(*unit)).is_ok_and(|m| {
                 let (low, high) = m.model.0.bounding_box();
                 (10.0..=1000.0).contains(&(high - low).norm())
             })
@@ -189,7 +199,9 @@ fn look_at(root: &Path, path: &Path, found: &mut Found) {
         let start = String::from_utf8_lossy(&start);
         let header = start.lines().find(|l| !l.trim().is_empty() && !l.starts_with('#')).unwrap_or_default();
         let column = |name: &str| header.split(',').any(|c| c.trim() == name);
-        if start.contains("distorted_x_px") {
+        if column("landmark") {
+            // A person's landmarks are no list of beads.
+        } else if start.contains("distorted_x_px") {
             found.distortions.push(relative(path));
         } else if column("x_mm") && column("y_mm") && !column("tx_mm") {
             if column("z_mm") { &mut found.bead_lists } else { &mut found.plate_lists }.push(relative(path));
@@ -201,6 +213,12 @@ fn look_at(root: &Path, path: &Path, found: &mut Found) {
             found.starts.push(relative(path));
         }
     }
+}
+
+/// Whether a file is a volume, by its name: reading it would take long.
+fn is_volume(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    VOLUMES.iter().any(|ending| name.ends_with(ending))
 }
 
 /// Whether a file's name speaks of a view: one of its words is the view's name.
@@ -405,7 +423,9 @@ fn template(found: &Found, folder: &Path) -> String {
             let frames = biplane_acquisition::frames::list_frames(folder, place).ok()?;
             frames.first().map(|f| f.label.clone())
         });
-        for body in bodies(found).keys() {
+        let of_volumes = found.volumes.iter().map(|path| plain(last(path).split('.').next().unwrap_or(path)));
+        let names: BTreeSet<String> = bodies(found).into_keys().chain(of_volumes).collect();
+        for body in names {
             let frame = first.as_deref().unwrap_or("0000");
             let _ = writeln!(out, "# {trial},{frame},{body},...,...,...,...,...,...,...");
         }
@@ -426,8 +446,12 @@ fn bodies(found: &Found) -> BTreeMap<String, Vec<&FoundMesh>> {
 /// One table a mesh; of meshes that differ by a number at the end only the largest, the others as comments.
 fn compose_bodies(found: &Found, out: &mut String, missing: &mut Vec<String>) {
     let bodies = bodies(found);
-    if bodies.is_empty() {
-        missing.push("meshes (STL) of the bodies".to_owned());
+    compose_volumes(found, &bodies, out, missing);
+    if bodies.is_empty() && found.volumes.is_empty() {
+        missing.push(
+            "meshes (STL, PLY, OBJ, OFF, VTK) of the bodies, or MRI, CT or maps of labels of their bones"
+                .to_owned(),
+        );
         *out += "[[body]]\nname = \"femur\"\nmesh = \"FILL IN\"\n\n";
     }
     for (name, mut meshes) in bodies {
@@ -448,6 +472,44 @@ fn compose_bodies(found: &Found, out: &mut String, missing: &mut Vec<String>) {
             }
         }
         out.push('\n');
+    }
+}
+
+/// A bone and a body for each volume; as comments where there is a mesh of that name.
+fn compose_volumes(
+    found: &Found,
+    bodies: &BTreeMap<String, Vec<&FoundMesh>>,
+    out: &mut String,
+    missing: &mut Vec<String>,
+) {
+    let mut seen = BTreeSet::new();
+    for path in &found.volumes {
+        let name = plain(last(path).split('.').next().unwrap_or(path));
+        if !seen.insert(name.clone()) {
+            let _ = writeln!(out, "# {path} is another volume of that name: left out\n");
+            continue;
+        }
+        let meshed = bodies.contains_key(&name);
+        let mark = if meshed { "# " } else { "" };
+        let lines = [
+            "[[slices]]".to_owned(),
+            format!("name = {}", quoted(&name)),
+            format!("volume = {}", quoted(path)),
+            "find = { method = \"bone\", seed_mm = [0.0, 0.0, 0.0] }   # FILL IN: a point in its marrow, mm; or { label = 1 }".to_owned(),
+            String::new(),
+            "[[body]]".to_owned(),
+            format!("name = {}", quoted(&name)),
+            format!("slices = {}                   # its contours become its surface", quoted(&name)),
+            "# axes = { body = \"femur\", side = \"left\" }   # its local coordinate system".to_owned(),
+            String::new(),
+        ];
+        for line in lines {
+            let _ = writeln!(out, "{}", if line.is_empty() { line } else { format!("{mark}{line}") });
+        }
+        if !meshed {
+            missing
+                .push(format!("where the bone {name} lies in {path}: a point in its marrow, or its label"));
+        }
     }
 }
 

@@ -19,6 +19,7 @@ pub mod init;
 pub mod logging;
 pub mod look;
 pub mod made;
+pub mod models;
 pub mod outcome;
 pub mod overlay;
 pub mod prepare;

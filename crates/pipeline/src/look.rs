@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, calibrate};
 use crate::edits::Drawn;
+use crate::models;
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::slices;
-use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, SLICES, STEPS, Steps};
+use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
 use crate::study::Study;
 use crate::summary::aligned;
 use crate::walk::Way;
@@ -63,23 +63,15 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     let context = Context::new();
     let (calibrated, way) = calibrate(&prepared, &store, &context, Way::Look(Vec::new()));
     let calibrated = calibrated?.unwrap_or_default();
+    let mut made = Vec::new();
+    let models = models::look::look(&prepared, &store, &context, &mut made);
     let steps = Steps {
         prepared: &prepared,
         calibrations: &calibrated.calibrations,
+        models: &models,
         store: &store,
         context: &context,
     };
-    let mut sliced = Vec::new();
-    for bone in 0..prepared.study.slices.len() {
-        let (found, walk) = slices::walk::walk(&prepared, bone, &store, &context, Way::Look(Vec::new()));
-        if let Way::Look(own) = walk.way {
-            sliced.extend(own);
-        }
-        if let Err(error) = found {
-            let line = format!("{SLICES}/{}: {error}", prepared.study.slices[bone].name);
-            sliced.push(Look { step: SLICES, fate: Fate::Fails, line: prepared.study.shorten(&line) });
-        }
-    }
     let looks: Vec<Vec<Look>> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");
@@ -88,7 +80,7 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
         Way::Look(before) => before,
         Way::Run(_) => Vec::new(),
     };
-    Ok(before.into_iter().chain(sliced).chain(looks.into_iter().flatten()).collect())
+    Ok(before.into_iter().chain(made).chain(looks.into_iter().flatten()).collect())
 }
 
 fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
@@ -133,7 +125,8 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
             });
         }
         let item = steps.item(job, &study.bodies[*body].name);
-        let ready = own.len() == job.pictures.len() && !steps.calibrations.is_empty();
+        let modelled = steps.model(*body).is_ok();
+        let ready = own.len() == job.pictures.len() && !steps.calibrations.is_empty() && modelled;
         let mut matched = None;
         looks.push(after(steps, MATCH, &item, fails, ready, || {
             let (why, stored) = steps.explain_match(job, place, &own)?;

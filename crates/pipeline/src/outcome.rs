@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use biplane_artifact::{Match, Verdict};
+use biplane_artifact::{AxesSource, Match, Side, SurfaceReport, Verdict};
 use biplane_geometry::Pose;
 
 use crate::calibrate::Calibrated;
@@ -149,6 +149,27 @@ impl SlicesOutcome {
     }
 }
 
+/// The model of a body.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModelOutcome {
+    /// Index of the body in the study.
+    pub body: usize,
+    /// What its surface comes from, for people.
+    pub from: String,
+    /// Vertices of what is matched; none where it could not be made.
+    pub points: usize,
+    /// Triangles of what is matched.
+    pub triangles: usize,
+    /// Whether a step made it; otherwise it is a mesh file as it is.
+    pub made: bool,
+    /// How its surface was made from slices, if it was.
+    pub surface: Option<SurfaceReport>,
+    /// Who said where its axes lie, and its side, if it has axes.
+    pub axes: Option<(AxesSource, Side)>,
+    /// Its sheet, relative to the folder of results.
+    pub sheet: Option<PathBuf>,
+}
+
 /// An item that could not be done.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
@@ -178,6 +199,8 @@ pub struct Outcome {
     pub frames: Vec<FrameOutcome>,
     /// In the order of the study.
     pub slices: Vec<SlicesOutcome>,
+    /// In the order of the study.
+    pub models: Vec<ModelOutcome>,
     /// Worth a look, in order.
     pub warnings: Vec<String>,
     /// In order.

@@ -6,17 +6,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use biplane_acquisition::beads::{read_bead_clicks, read_bead_list, read_xmalab_references};
 use biplane_acquisition::calibration::{CalibrationError, read_calibration, read_distortion_csv};
 use biplane_acquisition::frames::{FrameSource, PairBy, list_frames, pair};
 use biplane_acquisition::images::{ImageError, ImageFile, read_frame};
-use biplane_acquisition::meshes::{LengthUnit, read_mesh};
 use biplane_acquisition::plates::{read_plate_clicks, read_plate_list};
 use biplane_artifact::{
-    BeadClicks, BeadList, Calibration, DistortionTable, Frame, ModelMesh, PixelOrigin, PlateClicks,
-    PlatePattern, Start,
+    BeadClicks, BeadList, Calibration, DistortionTable, Frame, PixelOrigin, PlateClicks, PlatePattern, Start,
 };
 use biplane_geometry::Point3;
 use biplane_spots::{Look, SpotParams};
@@ -24,11 +22,13 @@ use biplane_stage::{Hashed, ParamsText};
 
 use crate::config;
 use crate::edits;
+use crate::models::landmarks::{GivenLandmarks, given};
+use crate::models::{self, MeshOfFile};
 use crate::outcome::StartKind;
 use crate::slices;
-use crate::sources::{InputIndex, MeshFacts};
+use crate::sources::InputIndex;
 use crate::starts::{starts_of, unused_edits, unused_starts};
-use crate::study::{Body, Correction, PlateSource, Study, Trial, View, ViewSource};
+use crate::study::{Correction, MeshSource, PlateSource, Study, Trial, View, ViewSource};
 use crate::tables::PoseTable;
 
 /// Files with many pictures that are kept open at a time.
@@ -65,8 +65,12 @@ pub struct Prepared {
     pub index: InputIndex,
     /// Where the fluoroscopes stand, or what that is found from.
     pub equipment: Equipment,
-    /// One a body of the study.
-    pub meshes: Vec<Model>,
+    /// The mesh file of each body of the study; none of one that comes from slices.
+    pub meshes: Vec<Option<Arc<MeshOfFile>>>,
+    /// The mesh that each body is compared with, if any.
+    pub references: Vec<Option<Arc<MeshOfFile>>>,
+    /// A person's landmarks of each body, if any.
+    pub landmarks: Vec<Option<GivenLandmarks>>,
     /// What hides edges in each view.
     pub masks: Vec<Vec<Hashed<Frame>>>,
     /// In the order of trials and frames.
@@ -142,33 +146,6 @@ pub struct CalibrationInputs {
     pub environment: ParamsText,
 }
 
-/// A body's mesh, read when it is first needed.
-#[derive(Debug)]
-pub struct Model {
-    /// What is known of it.
-    pub facts: MeshFacts,
-    path: PathBuf,
-    unit: LengthUnit,
-    loaded: OnceLock<Result<Hashed<ModelMesh>, String>>,
-}
-
-impl Model {
-    /// Its file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The mesh.
-    ///
-    /// # Errors
-    /// It cannot be read any more.
-    pub fn load(&self) -> Result<Hashed<ModelMesh>, String> {
-        let read =
-            || read_mesh(&self.path, self.unit).map(|m| Hashed::new(m.model)).map_err(|e| e.to_string());
-        self.loaded.get_or_init(read).clone()
-    }
-}
-
 /// Reads pictures; files that hold many are opened once, not once a picture.
 #[derive(Debug, Default)]
 struct Pictures {
@@ -219,11 +196,22 @@ impl Prepared {
                 mask.into_iter().map(Hashed::new).collect()
             })
             .collect();
-        let meshes: Vec<Model> = study.bodies.iter().filter_map(|b| faults.keep(model(b, &index))).collect();
-        for (body, mesh) in study.bodies.iter().zip(&meshes) {
-            let file = study.relative(&body.mesh);
-            warnings
-                .extend(mesh.facts.notes.iter().map(|note| format!("body {} ({file}): {note}", body.name)));
+        let of_file = |source: Option<&MeshSource>, faults: &mut Faults<'_>| {
+            let mesh = source.map(|source| faults.keep(MeshOfFile::of(source, &index)).map(Arc::new));
+            mesh.map_or(Some(None), |read| read.map(Some))
+        };
+        let mut meshes = Vec::new();
+        let mut references = Vec::new();
+        let mut landmarks = Vec::new();
+        for body in &study.bodies {
+            meshes.extend(of_file(body.surface.file(), &mut faults));
+            references.extend(of_file(body.reference.as_ref(), &mut faults));
+            landmarks.extend(faults.keep(given(&study, body)));
+            let read = meshes.last().into_iter().chain(references.last()).flatten();
+            warnings.extend(read.flat_map(|mesh: &Arc<MeshOfFile>| {
+                let file = study.relative(mesh.path());
+                mesh.facts.notes.iter().map(move |note| format!("body {} ({file}): {note}", body.name))
+            }));
         }
         let edits = study.edited_poses();
         let has_edits = edits.is_file();
@@ -256,12 +244,12 @@ impl Prepared {
             // A fault before this one leaves indices that do not fit, or starts that seem to be missing; it is reported,
             // and this trial is not looked at.
             let unread = (trial.starts.is_some() && table.is_none()) || (has_edits && edits.is_none());
-            if unread || meshes.len() != study.bodies.len() {
+            if unread || [meshes.len(), references.len(), landmarks.len()] != [study.bodies.len(); 3] {
                 continue;
             }
             let mut starts = Vec::new();
             for &body in &trial.bodies {
-                let centroid = Point3::from(meshes[body].facts.centroid);
+                let centroid = centre(&study, body, meshes[body].as_deref());
                 let name = &study.bodies[body].name;
                 let found = starts_of(&trial.name, name, &labels, edits.as_ref(), table, centroid);
                 let Some(found) = faults.keep(found) else { continue };
@@ -295,6 +283,7 @@ impl Prepared {
         let mut stray_edits = edits::find(&study, &mut jobs);
         let (slice_edits, strays) = slices::drawn::find(&study);
         stray_edits.extend(strays);
+        stray_edits.extend(models::landmarks::strays(&study));
         warnings.extend(
             stray_edits.iter().map(|(path, why)| format!("{} is not used: {why}", study.relative(path))),
         );
@@ -314,6 +303,8 @@ impl Prepared {
                     index,
                     equipment,
                     meshes,
+                    references,
+                    landmarks,
                     masks,
                     jobs,
                     slice_edits,
@@ -387,7 +378,7 @@ fn calibration_inputs(study: &Study, faults: &mut Faults<'_>) -> Option<Calibrat
         }),
     };
     let frame = study.beads.as_ref()?;
-    let mut read = faults.keep(read_bead_list(&frame.list, unit(frame.units)))?;
+    let mut read = faults.keep(read_bead_list(&frame.list, models::unit(frame.units)))?;
     for note in &read.notes {
         tracing::info!("{}: {note}", study.relative(&frame.list));
     }
@@ -431,27 +422,12 @@ fn calibration_inputs(study: &Study, faults: &mut Faults<'_>) -> Option<Calibrat
     })
 }
 
-fn unit(units: config::Units) -> LengthUnit {
-    match units {
-        config::Units::Mm => LengthUnit::Millimetres,
-        config::Units::Cm => LengthUnit::Centimetres,
-        config::Units::M => LengthUnit::Metres,
-        config::Units::In => LengthUnit::Inches,
-    }
-}
-
-fn model(body: &Body, index: &InputIndex) -> Result<Model, biplane_acquisition::meshes::MeshFileError> {
-    let unit = unit(body.units);
-    let loaded = OnceLock::new();
-    let facts = index.mesh(&body.mesh, unit.name(), || {
-        let file = read_mesh(&body.mesh, unit)?;
-        let notes = file.notes.iter().map(ToString::to_string).collect();
-        let model = Hashed::new(file.model);
-        let facts = MeshFacts::of(&model, notes);
-        let _ = loaded.set(Ok(model));
-        Ok(facts)
-    })?;
-    Ok(Model { facts, path: body.mesh.clone(), unit, loaded })
+/// The point between whose places a start is interpolated, model coordinates: near the middle of the body. What is made from slices is not
+/// there yet, but its seed is known.
+fn centre(study: &Study, body: usize, mesh: Option<&MeshOfFile>) -> Point3 {
+    let seed = || study.slices.get(study.bodies[body].surface.bone()?)?.find.seed_mm;
+    let file = mesh.map(|mesh| mesh.facts.centroid);
+    Point3::from(file.or_else(seed).unwrap_or_default())
 }
 
 type Pair = (String, Option<f64>, Vec<FrameSource>);

@@ -2,11 +2,12 @@
 //!
 //! The same results give the same bytes: no clock and no absolute path is in it.
 
-use biplane_artifact::{Match, PlateFit, Verdict, ViewFit};
+use biplane_artifact::{AxesSource, Match, PlateFit, Side, Verdict, ViewFit};
 use serde::Serialize;
 
 use crate::calibrate::Calibrated;
-use crate::outcome::{BodyOutcome, FrameOutcome, Outcome, SlicesOutcome};
+use crate::models::MODELS;
+use crate::outcome::{BodyOutcome, FrameOutcome, ModelOutcome, Outcome, SlicesOutcome};
 use crate::overlay::COLOURS;
 use crate::results::UNKNOWN;
 use crate::study::Study;
@@ -129,6 +130,22 @@ struct SlicesPart<'a> {
     table: Option<String>,
 }
 
+/// The model of a body.
+#[derive(Serialize)]
+struct ModelPart<'a> {
+    body: &'a str,
+    from: &'a str,
+    points: usize,
+    triangles: usize,
+    volume: String,
+    smoothed: String,
+    faults: String,
+    axes: String,
+    proposed: bool,
+    sheet: Option<String>,
+    files: Option<String>,
+}
+
 #[derive(Serialize)]
 struct Page<'a> {
     name: &'a str,
@@ -144,6 +161,7 @@ struct Page<'a> {
     failures: Vec<(&'a str, &'a str)>,
     slices: Vec<SlicesPart<'a>>,
     slices_flagged: usize,
+    models: Vec<ModelPart<'a>>,
     trials: Vec<TrialPart>,
     provenance: &'a Provenance,
 }
@@ -170,10 +188,41 @@ pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) ->
         failures: outcome.failures.iter().map(|f| (f.item.as_str(), f.message.as_str())).collect(),
         slices: outcome.slices.iter().map(|found| slices_part(study, found)).collect(),
         slices_flagged: outcome.slices.iter().map(|found| found.flagged.len()).sum(),
+        models: outcome.models.iter().map(|found| model_part(study, found)).collect(),
         trials: (0..study.trials.len()).map(|trial| part(study, outcome, trial)).collect(),
         provenance,
     };
     Ok(environment.get_template("report.html")?.render(minijinja::value::Serde(page))?)
+}
+
+fn model_part<'a>(study: &'a Study, found: &'a ModelOutcome) -> ModelPart<'a> {
+    let body = &study.bodies[found.body].name;
+    let report = found.surface.as_ref();
+    let smoothed =
+        report.filter(|r| r.unsmoothed_volume_mm3 > 0.0 && r.volume_mm3 != r.unsmoothed_volume_mm3);
+    let smoothed = smoothed.map(|r| 100.0 * (r.volume_mm3 / r.unsmoothed_volume_mm3 - 1.0));
+    let side = |side| match side {
+        Side::Left => "left, ",
+        Side::Right => "right, ",
+    };
+    let source = |source| match source {
+        AxesSource::Points => "given by points",
+        AxesSource::Landmarks => "from landmarks",
+        AxesSource::Shape => "proposed from the shape",
+    };
+    ModelPart {
+        body,
+        from: &found.from,
+        points: found.points,
+        triangles: found.triangles,
+        volume: report.map_or(String::new(), |r| format!("{:.2}", r.volume_mm3 / 1000.0)),
+        smoothed: smoothed.map_or(String::new(), |percent| format!("{percent:+.2} %")),
+        faults: report.map_or(String::new(), |r| r.faults.len().to_string()),
+        axes: found.axes.map_or(String::new(), |(by, of)| format!("{}{}", side(of), source(by))),
+        proposed: found.axes.is_some_and(|(by, _)| by == AxesSource::Shape),
+        sheet: found.sheet.as_deref().map(|path| url(&crate::diagnostics::slashes(path))),
+        files: found.made.then(|| url(&format!("{MODELS}/{body}.stl"))),
+    }
 }
 
 fn slices_part<'a>(study: &'a Study, found: &SlicesOutcome) -> SlicesPart<'a> {
@@ -362,7 +411,7 @@ fn url(path: &str) -> String {
 mod tests {
     use super::*;
     use crate::outcome::StartKind;
-    use crate::study::{Body, Trial, View};
+    use crate::study::{Body, MeshSource, SurfaceSource, Trial, View};
 
     fn study() -> Study {
         let view = |name: &str| View {
@@ -378,7 +427,14 @@ mod tests {
             root: "/study".into(),
             name: "<script> & co".into(),
             views: vec![view("A"), view("B")],
-            bodies: vec![Body { name: "femur".into(), mesh: "m".into(), units: crate::config::Units::Mm }],
+            bodies: vec![Body {
+                name: "femur".into(),
+                surface: SurfaceSource::File(MeshSource { path: "m".into(), units: None }),
+                model: None,
+                axes: None,
+                landmarks: None,
+                reference: None,
+            }],
             slices: vec![],
             trials: vec![Trial {
                 name: "lunge".into(),

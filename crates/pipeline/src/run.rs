@@ -16,16 +16,17 @@ use crate::diagnostics::slashes;
 use crate::edits::Drawn;
 use crate::logging::Progress;
 use crate::made::Made;
+use crate::models;
 use crate::outcome::{BodyOutcome, ContourOutcome, Failure, FrameOutcome, Outcome, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
 use crate::slices;
 use crate::steps::{
-    CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, MATCH, OVERLAY, SEGMENT, SLICES, SPOTS, STEPS,
-    Steps,
+    AXES, CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, LABEL_SURFACE, LOFT, MATCH, MODEL,
+    OVERLAY, SEGMENT, SLICES, SPOTS, STEPS, Steps,
 };
-use crate::study::{Plate, PlateSource, Study, ViewSource};
+use crate::study::{Plate, PlateSource, Study, SurfaceSource, ViewSource};
 use crate::walk::Way;
 
 /// Why a run came to no end.
@@ -114,17 +115,30 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         return Err(RunError::Stopped { done: 0, frames: prepared.jobs.len() });
     };
     count(sliced.done, &mut steps, &mut warnings);
-    for failure in &sliced.failures {
-        let step = failure.item.split('/').next().unwrap_or_default();
-        steps.iter_mut().filter(|(name, _)| *name == step).for_each(|(_, count)| count.failed += 1);
-    }
+    failed(&sliced.failures, &mut steps);
     for warning in &sliced.warnings {
         tracing::warn!("{warning}");
     }
     warnings.extend(sliced.warnings);
     provenance.inputs.extend(sliced.inputs);
-    let steps_of_frames =
-        Steps { prepared: &prepared, calibrations: &calibrated.calibrations, store: &store, context };
+    let modelled = pool.install(|| models::run::run(&prepared, &sliced.found, &store, context));
+    let Some(modelled) = modelled else {
+        return Err(RunError::Stopped { done: 0, frames: prepared.jobs.len() });
+    };
+    count(modelled.done, &mut steps, &mut warnings);
+    failed(&modelled.failures, &mut steps);
+    for warning in &modelled.warnings {
+        tracing::warn!("{warning}");
+    }
+    warnings.extend(modelled.warnings);
+    provenance.inputs.extend(modelled.inputs);
+    let steps_of_frames = Steps {
+        prepared: &prepared,
+        calibrations: &calibrated.calibrations,
+        models: &modelled.models,
+        store: &store,
+        context,
+    };
     let progress = Progress::new("Matching", prepared.jobs.len(), "frames");
     let frames: Vec<Option<Frame>> = pool.install(|| {
         prepared
@@ -146,11 +160,12 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
         source,
     })?;
     let of_frames = frames.iter().flatten().flat_map(|f| f.made.iter().cloned());
-    let made = Made::of(of_frames.chain(written).chain(sliced.made));
+    let made = Made::of(of_frames.chain(written).chain(sliced.made).chain(modelled.made));
     let mut outcome = gather(frames.into_iter().flatten(), steps, warnings, &mut provenance);
     outcome.calibration = std::mem::take(&mut calibrated);
     outcome.slices = sliced.outcomes;
-    outcome.failures.splice(0..0, sliced.failures);
+    outcome.models = modelled.outcomes;
+    outcome.failures.splice(0..0, sliced.failures.into_iter().chain(modelled.failures));
     outcome.edits.iter_mut().zip(sliced.edits).for_each(|(sum, part)| *sum += part);
     let (study, jobs) = (prepared.study, prepared.jobs.len());
     let hidden = study.hidden();
@@ -226,9 +241,13 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
     let drawn = drawn_in_frame(steps, job, &mut frame, &mut missing)?;
     let bodies: Vec<_> = (0..job.bodies.len())
         .into_par_iter()
-        .map(|place| match &missing {
-            Some(message) => Err(message.clone()),
-            None => Ok(run_body(steps, job, place, &curves, &drawn)),
+        .map(|place| {
+            // Without a model nothing is matched; why there is none is said once, where it was made.
+            let without = || steps.model(job.bodies[place].0).err().map(|e| e.to_string());
+            match missing.clone().or_else(without) {
+                Some(message) => Err(message),
+                None => Ok(run_body(steps, job, place, &curves, &drawn)),
+            }
         })
         .collect();
     let mut matches = Vec::new();
@@ -487,6 +506,14 @@ fn count(
     }
 }
 
+/// Counts items that could not be done.
+fn failed(failures: &[Failure], steps: &mut [(&'static str, StepCount)]) {
+    for failure in failures {
+        let step = failure.item.split('/').next().unwrap_or_default();
+        steps.iter_mut().filter(|(name, _)| *name == step).for_each(|(_, count)| count.failed += 1);
+    }
+}
+
 fn gather(
     frames: impl Iterator<Item = Frame>,
     mut steps: [(&'static str, StepCount); STEPS.len()],
@@ -549,11 +576,19 @@ fn provenance(prepared: &Prepared) -> Provenance {
         parameters.push((DISTORTION.to_owned(), text(toml::to_string(&study.distortion))));
         parameters.push((ENVIRONMENT.to_owned(), text(toml::to_string(&study.environment))));
     }
-    for (body, mesh) in study.bodies.iter().zip(&prepared.meshes) {
-        inputs.push((study.relative(&body.mesh), mesh.facts.hash().to_hex()));
-    }
     for bone in &study.slices {
         parameters.push((format!("{SLICES} {}", bone.name), text(toml::to_string(&bone.find))));
+    }
+    for body in &study.bodies {
+        let name = &body.name;
+        let (step, of_surface) = match &body.surface {
+            SurfaceSource::File(_) => (MODEL, None),
+            SurfaceSource::Contours(_, loft) => (LOFT, Some(toml::to_string(loft))),
+            SurfaceSource::Labels(_, labels) => (LABEL_SURFACE, Some(toml::to_string(labels))),
+        };
+        parameters.extend(of_surface.map(|p| (format!("{step} {name}"), text(p))));
+        parameters.extend(body.model.as_ref().map(|m| (format!("{MODEL} {name}"), text(toml::to_string(m)))));
+        parameters.extend(body.axes.as_ref().map(|a| (format!("{AXES} {name}"), text(toml::to_string(a)))));
     }
     parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));
     parameters.push((EDIT.to_owned(), text(toml::to_string(&study.edit))));

@@ -56,6 +56,10 @@ pub struct MeshFacts {
     hash: ContentHash,
     /// Area centroid in model coordinates, mm.
     pub centroid: [f64; 3],
+    /// Vertices.
+    pub points: usize,
+    /// Triangles.
+    pub triangles: usize,
     /// What the reader found worth saying.
     pub notes: Vec<String>,
 }
@@ -64,7 +68,8 @@ impl MeshFacts {
     /// Of a mesh and what its reader noted.
     pub fn of(mesh: &Hashed<ModelMesh>, notes: Vec<String>) -> Self {
         let c = mesh.0.area_centroid();
-        Self { hash: mesh.hash(), centroid: [c.x, c.y, c.z], notes }
+        let (points, triangles) = (mesh.0.vertices().len(), mesh.0.triangles().len());
+        Self { hash: mesh.hash(), centroid: [c.x, c.y, c.z], points, triangles, notes }
     }
 
     /// The hash, for keys.

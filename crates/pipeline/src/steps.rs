@@ -3,9 +3,9 @@
 //! `segment/<trial>/<frame>/<view>` makes curves from a picture, `edit/<trial>/<frame>/<view>/<body>` from what a person drew in it,
 //! `match/<trial>/<frame>/<body>` a pose from the curves of all views, `contour/<trial>/<frame>/<view>/<body>` says which curves are
 //! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies. Those of slices are in
-//! [`crate::slices`].
+//! [`crate::slices`], those of models in [`crate::models`].
 
-use biplane_artifact::{Artifact, Calibration, Contour, Curves, EditedContour, Match, Picture};
+use biplane_artifact::{Artifact, Calibration, Contour, Curves, EditedContour, Match, ModelMesh, Picture};
 use biplane_contour::{ContourInputs, ContourOf};
 use biplane_optimisation::{MatchBody, MatchInputs};
 use biplane_segmentation::{Segment, SegmentInputs, Trace, TraceInputs};
@@ -15,6 +15,7 @@ use biplane_stage::{
 };
 
 use crate::edits::{self, Drawn};
+use crate::models::BodyModel;
 use crate::overlay::{Overlay, OverlayInputs};
 use crate::prepare::{Job, Prepared};
 use crate::sources::FrameFacts;
@@ -32,6 +33,14 @@ pub const DRAWING: &str = "drawing";
 pub const SLICES: &str = "slices";
 /// Step of contours of slices with what a person drew in their place.
 pub const SLICE_EDITS: &str = "slice_edits";
+/// Step of surfaces from contours of slices.
+pub const LOFT: &str = "loft";
+/// Step of surfaces from maps of labels.
+pub const LABEL_SURFACE: &str = "label_surface";
+/// Step of the meshes that are matched.
+pub const MODEL: &str = "model";
+/// Step of local coordinate systems of bodies.
+pub const AXES: &str = "axes";
 /// Step of edge curves.
 pub const SEGMENT: &str = "segment";
 /// Step of curves along what a person drew.
@@ -43,8 +52,23 @@ pub const CONTOUR: &str = "contour";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 11] =
-    [SPOTS, DISTORTION, ENVIRONMENT, SLICES, SLICE_EDITS, DRAWING, SEGMENT, EDIT, MATCH, CONTOUR, OVERLAY];
+pub const STEPS: [&str; 15] = [
+    SPOTS,
+    DISTORTION,
+    ENVIRONMENT,
+    SLICES,
+    SLICE_EDITS,
+    LOFT,
+    LABEL_SURFACE,
+    MODEL,
+    AXES,
+    DRAWING,
+    SEGMENT,
+    EDIT,
+    MATCH,
+    CONTOUR,
+    OVERLAY,
+];
 
 /// Why an item has no output.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -85,6 +109,8 @@ pub struct Steps<'a> {
     pub prepared: &'a Prepared,
     /// One a view; none as long as they are not known.
     pub calibrations: &'a [Hashed<Calibration>],
+    /// One a body; `None` where its model is not there, or not known yet.
+    pub models: &'a [Option<BodyModel>],
     /// Its store.
     pub store: &'a Store,
     /// Threads see this to stop.
@@ -256,6 +282,16 @@ impl Steps<'_> {
         Some(Standing { automatic, drawn })
     }
 
+    /// The model of a body of the study.
+    ///
+    /// # Errors
+    /// It could not be made, or is not known yet.
+    pub fn model(&self, body: usize) -> Result<&BodyModel, ItemError> {
+        let name = || &self.prepared.study.bodies[body].name;
+        let model = self.models.get(body).and_then(Option::as_ref);
+        model.ok_or_else(|| ItemError::Failed(format!("the model of {} is not there", name())))
+    }
+
     fn contour_promised(
         &self,
         job: &Job,
@@ -263,13 +299,13 @@ impl Steps<'_> {
         place: usize,
         curves: &Stored<Curves>,
         matched: Promise<Match>,
-    ) -> ContourInputs<Promised> {
-        ContourInputs {
+    ) -> Result<ContourInputs<Promised>, ItemError> {
+        Ok(ContourInputs {
             curves: curves.promise(),
             calibration: self.calibrations[self.view(job, slot).0].promise(),
-            model: self.prepared.meshes[job.bodies[place].0].facts.promise(),
+            model: self.model(job.bodies[place].0)?.promise(),
             matched,
-        }
+        })
     }
 
     /// All that says which curves of a picture are the outline of a posed body.
@@ -287,7 +323,7 @@ impl Steps<'_> {
         Ok(ContourInputs {
             curves: read_stored(self.store, curves)?,
             calibration: self.calibrations[self.view(job, slot).0].clone(),
-            model: self.prepared.meshes[job.bodies[place].0].load()?,
+            model: self.load_model(job.bodies[place].0)?,
             matched: matched.clone(),
         })
     }
@@ -304,7 +340,7 @@ impl Steps<'_> {
         curves: &Stored<Curves>,
         matched: &Hashed<Match>,
     ) -> Done<Hashed<Contour>> {
-        let promised = self.contour_promised(job, slot, place, curves, matched.promise());
+        let promised = self.contour_promised(job, slot, place, curves, matched.promise())?;
         let load = || self.contour_inputs(job, slot, place, curves, matched);
         let item = self.item_of_body(job, slot, place);
         let done = self
@@ -326,21 +362,30 @@ impl Steps<'_> {
         curves: &Stored<Curves>,
         matched: Promise<Match>,
     ) -> Explained<Contour> {
-        let promised = self.contour_promised(job, slot, place, curves, matched);
+        let promised = self.contour_promised(job, slot, place, curves, matched)?;
         let parts = KeyParts::of::<ContourOf>(&self.prepared.contour, &promised);
         self.explain::<ContourOf>(CONTOUR, &self.item_of_body(job, slot, place), &parts)
     }
 
-    fn match_promised(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> MatchInputs<Promised> {
+    fn load_model(&self, body: usize) -> Result<Hashed<ModelMesh>, String> {
+        self.model(body).map_err(|e| e.to_string())?.load()
+    }
+
+    fn match_promised(
+        &self,
+        job: &Job,
+        place: usize,
+        curves: &[Stored<Curves>],
+    ) -> Result<MatchInputs<Promised>, ItemError> {
         let (body, _, start) = &job.bodies[place];
-        MatchInputs {
+        Ok(MatchInputs {
             curves: curves.iter().map(Stored::promise).collect(),
             calibrations: (0..curves.len())
                 .map(|slot| self.calibrations[self.view(job, slot).0].promise())
                 .collect(),
-            model: self.prepared.meshes[*body].facts.promise(),
+            model: self.model(*body)?.promise(),
             start: start.promise(),
-        }
+        })
     }
 
     /// Brings one body to its pose.
@@ -355,11 +400,11 @@ impl Steps<'_> {
                 calibrations: (0..curves.len())
                     .map(|slot| self.calibrations[self.view(job, slot).0].clone())
                     .collect(),
-                model: self.prepared.meshes[*body].load()?,
+                model: self.load_model(*body)?,
                 start: start.clone(),
             })
         };
-        let promised = self.match_promised(job, place, curves);
+        let promised = self.match_promised(job, place, curves)?;
         let item = self.item(job, &self.prepared.study.bodies[*body].name);
         let done = self
             .store
@@ -374,13 +419,14 @@ impl Steps<'_> {
         slot: usize,
         facts: &FrameFacts,
         matches: &[Promise<Match>],
-    ) -> OverlayInputs<Promised> {
-        OverlayInputs {
+    ) -> Result<OverlayInputs<Promised>, ItemError> {
+        let models = job.bodies.iter().map(|(body, ..)| self.model(*body).map(BodyModel::promise));
+        Ok(OverlayInputs {
             frame: facts.promise(),
             calibration: self.calibrations[self.view(job, slot).0].promise(),
-            models: job.bodies.iter().map(|(body, ..)| self.prepared.meshes[*body].facts.promise()).collect(),
+            models: models.collect::<Result<_, _>>()?,
             matches: matches.to_vec(),
-        }
+        })
     }
 
     /// Draws the bodies of a frame on one of its pictures; one match a body of the job.
@@ -391,7 +437,7 @@ impl Steps<'_> {
         let facts = self.picture(job, slot)?;
         let (view, name) = self.view(job, slot);
         let load = || -> Result<OverlayInputs, String> {
-            let models = job.bodies.iter().map(|(body, ..)| self.prepared.meshes[*body].load());
+            let models = job.bodies.iter().map(|(body, ..)| self.load_model(*body));
             Ok(OverlayInputs {
                 frame: Hashed::new(self.prepared.read(&job.pictures[slot]).map_err(|e| e.to_string())?),
                 calibration: self.calibrations[view].clone(),
@@ -400,7 +446,7 @@ impl Steps<'_> {
             })
         };
         let promises: Vec<Promise<Match>> = matches.iter().map(Hashed::promise).collect();
-        let promised = self.overlay_promised(job, slot, &facts, &promises);
+        let promised = self.overlay_promised(job, slot, &facts, &promises)?;
         self.store
             .execute::<Overlay, _>(
                 OVERLAY,
@@ -424,7 +470,7 @@ impl Steps<'_> {
         slot: usize,
         matches: &[Promise<Match>],
     ) -> Result<Explanation, ItemError> {
-        let promised = self.overlay_promised(job, slot, &self.picture(job, slot)?, matches);
+        let promised = self.overlay_promised(job, slot, &self.picture(job, slot)?, matches)?;
         let parts = KeyParts::of::<Overlay>(&self.prepared.overlay, &promised);
         self.explain::<Overlay>(OVERLAY, &self.item(job, self.view(job, slot).1), &parts).map(|(why, _)| why)
     }
@@ -444,9 +490,8 @@ impl Steps<'_> {
                 }
             }
             ExecuteError::InputChanged { .. } => {
-                for (body, ..) in &job.bodies {
-                    self.prepared.index.distrust(self.prepared.meshes[*body].path());
-                }
+                let files = job.bodies.iter().filter_map(|(body, ..)| self.model(*body).ok()?.file());
+                files.for_each(|file| self.prepared.index.distrust(file));
             }
             _ => {}
         }
@@ -469,7 +514,7 @@ impl Steps<'_> {
     /// # Errors
     /// The store cannot be read.
     pub fn explain_match(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> Explained<Match> {
-        let promised = self.match_promised(job, place, curves);
+        let promised = self.match_promised(job, place, curves)?;
         let parts = KeyParts::of::<MatchBody>(&self.prepared.matching, &promised);
         let item = self.item(job, &self.prepared.study.bodies[job.bodies[place].0].name);
         self.explain::<MatchBody>(MATCH, &item, &parts)

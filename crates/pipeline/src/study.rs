@@ -7,20 +7,28 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use biplane_axes::{AxesParams, ModelFrame};
 use biplane_contour::{ContourError, ContourParams};
 use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
+use biplane_label_surface::LabelSurfaceParams;
+use biplane_lofting::LoftParams;
 use biplane_optimisation::{MatchError, MatchParams};
+use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentError, SegmentParams, TraceError, TraceParams};
 use biplane_slices::SlicesParams;
 use biplane_spots::{Look, SpotError, SpotSettings};
 
 use crate::config::{
-    BeadsSection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin, PairBy,
-    PipelineFile, PlateSection, SlicesSection, TrialSection, Units,
+    BeadsSection, BodySection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin,
+    PairBy, PipelineFile, PlateSection, SlicesSection, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
+use crate::models::LANDMARKS;
 use crate::slices::SLICES;
+
+/// Points of a model from slices, where it is not said.
+const POINTS: u32 = 15_000;
 
 /// A checked study.
 #[derive(Debug)]
@@ -140,10 +148,54 @@ pub struct Beads {
 pub struct Body {
     /// Its name.
     pub name: String,
-    /// Its surface.
-    pub mesh: PathBuf,
-    /// Unit of that file.
-    pub units: Units,
+    /// Where its surface comes from.
+    pub surface: SurfaceSource,
+    /// How its points are spread; `None` where the vertices of its mesh are matched as they are.
+    pub model: Option<ModelParams>,
+    /// What it is, for its local coordinate system, if one is wanted.
+    pub axes: Option<AxesParams>,
+    /// A person's landmarks; those in `edits/` win.
+    pub landmarks: Option<PathBuf>,
+    /// Another mesh of it to be compared with.
+    pub reference: Option<MeshSource>,
+}
+
+/// A mesh in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MeshSource {
+    /// The file.
+    pub path: PathBuf,
+    /// Unit of that file, if it was said.
+    pub units: Option<Units>,
+}
+
+/// Where a body's surface comes from.
+#[derive(Debug, Clone)]
+pub enum SurfaceSource {
+    /// A mesh file.
+    File(MeshSource),
+    /// The contours of a bone of the study.
+    Contours(usize, LoftParams),
+    /// The labels in which a bone of the study is found.
+    Labels(usize, LabelSurfaceParams),
+}
+
+impl SurfaceSource {
+    /// The mesh file, if it is one.
+    pub fn file(&self) -> Option<&MeshSource> {
+        match self {
+            Self::File(mesh) => Some(mesh),
+            Self::Contours(..) | Self::Labels(..) => None,
+        }
+    }
+
+    /// The bone of the study whose slices it comes from, if it does.
+    pub fn bone(&self) -> Option<usize> {
+        match self {
+            Self::File(_) => None,
+            Self::Contours(bone, _) | Self::Labels(bone, _) => Some(*bone),
+        }
+    }
 }
 
 /// A bone in the slices of a volume.
@@ -217,6 +269,12 @@ impl Study {
         self.views.iter().any(|v| matches!(v.source, ViewSource::Pictures { .. }))
     }
 
+    /// Where a person's own landmarks of a body are read from, in the order in which they are looked for; a run never writes there.
+    pub fn edited_landmarks(&self, body: &str) -> [PathBuf; 3] {
+        ["csv", "fcsv", "mrk.json"]
+            .map(|ending| self.edits().join(LANDMARKS).join(format!("{body}.{ending}")))
+    }
+
     /// The folder of the store and of the index of inputs.
     pub fn hidden(&self) -> PathBuf {
         self.root.join(".biplane")
@@ -287,6 +345,7 @@ impl Study {
             check.list.push(parameter(&text, "distortion", key, &error.to_string()));
         }
         check.list.extend(crate::slices::section::faults(&file.slices, &text));
+        check.list.extend(crate::models::section::faults(&file.body, &file.slices, &text));
         let study = check.study(file);
         if check.list.is_empty() { Ok(study) } else { Err(wrong(check.list)) }
     }
@@ -340,20 +399,17 @@ impl Check {
         let plate = self.plate(plate, plates);
         let beads = self.beads(beads, frames);
         let views = self.views(fluoroscope, plate.is_some(), beads.is_some());
-        let bodies: Vec<Body> = body
-            .into_iter()
-            .map(|b| Body { mesh: self.file(&b.mesh, "mesh"), name: b.name.into_inner(), units: b.units })
-            .collect();
+        let bodies: Vec<Body> = body.into_iter().map(|b| self.body(b, &slices)).collect();
         self.names("bone", slices.iter().map(|s| &s.name));
-        let apart = trial.iter().find(|t| !slices.is_empty() && t.name.get_ref() == SLICES);
-        if let Some(trial) = apart {
-            self.list.push(
-                Problem::at(
-                    trial.name.span(),
-                    "a trial cannot be called `slices` in a study with [[slices]]",
-                )
-                .help("edits/slices/ holds what a person drew in slices: give the trial another name"),
-            );
+        for (taken, what, used) in [
+            (SLICES, "what a person drew in slices", !slices.is_empty()),
+            (LANDMARKS, "a person's landmarks of bodies", bodies.iter().any(|b| b.axes.is_some())),
+        ] {
+            for trial in trial.iter().filter(|t| used && t.name.get_ref() == taken) {
+                let text = format!("a trial cannot be called `{taken}` in this study");
+                let help = format!("edits/{taken}/ holds {what}: give the trial another name");
+                self.list.push(Problem::at(trial.name.span(), text).help(help));
+            }
         }
         let trials = trial.into_iter().map(|t| self.trial(t, &views, &bodies)).collect();
         let slices = slices.into_iter().map(|s| self.sliced(s)).collect();
@@ -622,6 +678,121 @@ impl Check {
             offset,
             frame_rate_hz: rate,
             bodies: chosen,
+        }
+    }
+
+    fn body(&mut self, section: BodySection, bones: &[SlicesSection]) -> Body {
+        let BodySection {
+            name,
+            mesh,
+            units,
+            slices,
+            loft,
+            label_surface,
+            model,
+            axes,
+            landmarks,
+            reference,
+            reference_units,
+        } = section;
+        let surface = match (mesh, slices) {
+            (Some(mesh), None) => {
+                let spans =
+                    [loft.as_ref().map(toml::Spanned::span), label_surface.as_ref().map(toml::Spanned::span)];
+                for span in spans.into_iter().flatten() {
+                    let problem =
+                        Problem::at(span, "this is for bodies from slices, and this one has a mesh");
+                    self.list.push(problem.help("remove it, or give `slices` instead of `mesh`"));
+                }
+                SurfaceSource::File(MeshSource { path: self.file(&mesh, "mesh"), units })
+            }
+            (None, Some(slices)) => self.surface_from_slices(&name, &slices, loft, label_surface, bones),
+            (mesh, _) => {
+                let text = if mesh.is_some() {
+                    "says twice where its surface comes from: `mesh` and `slices`"
+                } else {
+                    "does not say where its surface comes from"
+                };
+                self.list.push(Problem::at(name.span(), format!("body {} {text}", name.get_ref())).help(
+                    "give either mesh = \"a mesh file\", or slices = \"the name of a [[slices]] table\"",
+                ));
+                SurfaceSource::File(MeshSource { path: PathBuf::new(), units })
+            }
+        };
+        let wanted = axes.is_some();
+        if let Some(landmarks) = landmarks.as_ref().filter(|_| !wanted) {
+            self.list.push(
+                Problem::at(landmarks.span(), "landmarks are for a body's axes, and it is not said what this body is")
+                    .help("add axes = { body = \"femur\", side = \"left\" } (or tibia, patella, femoral_component, ...)"),
+            );
+        }
+        let model = model.map(toml::Spanned::into_inner);
+        let axes = axes.map(|axes| {
+            let mut axes = axes.into_inner();
+            // A surface from slices is in the scanner's frame.
+            if surface.bone().is_some() && axes.frame == ModelFrame::Unknown {
+                axes.frame = ModelFrame::Lps;
+            }
+            axes
+        });
+        Body {
+            // A surface from slices has more points than a match needs; so many as the thesis settles on do.
+            model: model
+                .or_else(|| surface.bone().map(|_| ModelParams { points: POINTS, ..ModelParams::default() })),
+            name: name.into_inner(),
+            surface,
+            axes,
+            landmarks: landmarks.map(|l| self.file(&l, "file of landmarks")),
+            reference: reference
+                .map(|r| MeshSource { path: self.file(&r, "reference mesh"), units: reference_units }),
+        }
+    }
+
+    /// The surface of a body from the bone called `slices`.
+    fn surface_from_slices(
+        &mut self,
+        name: &Located,
+        slices: &Located,
+        loft: Option<toml::Spanned<LoftParams>>,
+        labels: Option<toml::Spanned<LabelSurfaceParams>>,
+        bones: &[SlicesSection],
+    ) -> SurfaceSource {
+        let names = || bones.iter().map(|b| b.name.get_ref().as_str());
+        let Some(bone) = names().position(|n| n == slices.get_ref()) else {
+            self.list.push(
+                Problem::at(slices.span(), format!("there is no [[slices]] called `{}`", slices.get_ref()))
+                    .label(meant(slices.get_ref(), names()))
+                    .help("`slices` takes the name of a [[slices]] table"),
+            );
+            return SurfaceSource::Contours(0, LoftParams::default());
+        };
+        match (loft, labels) {
+            (loft, None) => {
+                SurfaceSource::Contours(bone, loft.map(toml::Spanned::into_inner).unwrap_or_default())
+            }
+            (Some(loft), Some(_)) => {
+                let text = format!("body {} says twice how its surface is made", name.get_ref());
+                let problem = Problem::at(loft.span(), text);
+                self.list.push(
+                    problem.help("give either `loft` (from contours) or `label_surface` (from labels)"),
+                );
+                SurfaceSource::Contours(bone, LoftParams::default())
+            }
+            (None, Some(labels)) => {
+                let label = bones[bone].find.get_ref().label;
+                let span = labels.span();
+                let mut params = labels.into_inner();
+                if params.label == 0 {
+                    params.label = label;
+                }
+                if label == 0 || params.label != label {
+                    let problem = Problem::at(span, "the bone is not found by this label");
+                    self.list.push(problem.help(
+                        "a label surface needs [[slices]] with find = { label = N }, and the same label if it is given again",
+                    ));
+                }
+                SurfaceSource::Labels(bone, params)
+            }
         }
     }
 

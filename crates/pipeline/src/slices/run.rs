@@ -20,6 +20,8 @@ use crate::walk::Way;
 /// What the bones of a study gave.
 #[derive(Debug, Default)]
 pub struct SlicesRun {
+    /// What was found, one a bone of the study.
+    pub found: Vec<Sliced>,
     /// In the order of the study.
     pub outcomes: Vec<SlicesOutcome>,
     /// Step and how it was done.
@@ -53,7 +55,8 @@ pub fn run(prepared: &Prepared, store: &Store, context: &Context) -> Option<Slic
         .collect();
     let mut all = SlicesRun::default();
     for bone in bones {
-        let SlicesRun { outcomes, done, failures, warnings, inputs, made, edits } = bone?;
+        let SlicesRun { found, outcomes, done, failures, warnings, inputs, made, edits } = bone?;
+        all.found.extend(found);
         all.outcomes.extend(outcomes);
         all.done.extend(done);
         all.failures.extend(failures);
@@ -115,6 +118,7 @@ fn of_bone(prepared: &Prepared, bone: usize, store: &Store, context: &Context) -
     }
     all.warnings.iter_mut().for_each(|w| *w = study.shorten(w));
     all.outcomes.push(outcome);
+    all.found.push(found);
     Some(all)
 }
 

@@ -4,6 +4,7 @@
 mod calibration;
 mod edits;
 mod messages;
+mod models;
 mod scene;
 mod slices;
 mod study;

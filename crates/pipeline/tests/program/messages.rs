@@ -42,7 +42,11 @@ fn faults_of_the_file_point_at_their_place() {
         "frame_rate_hz = 0",
         &["pipeline.toml:17:17", "a frame rate of 0 Hz cannot be"],
     );
-    refuses("mesh = \"box.stl\"\n", "", &["pipeline.toml:10:1", "key `mesh` is missing", "an STL file"]);
+    refuses(
+        "mesh = \"box.stl\"\n",
+        "",
+        &["pipeline.toml:11:8", "does not say where its surface comes from", "a mesh file"],
+    );
     refuses("\"starts.csv\"", "\"start.csv\"", &["pipeline.toml:18:10", "did you mean `starts.csv`?"]);
     refuses("\"frames/A\"", "\"frame/A\"", &["pipeline.toml:16:16", "`frame` is not there either"]);
     refuses("\"frames/A\"", "\"frames/A/*.tif\"", &["pipeline.toml:16:16", "no file matches this pattern"]);

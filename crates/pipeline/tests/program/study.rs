@@ -47,13 +47,13 @@ fn images_become_poses_and_a_second_run_does_nothing() {
     std::fs::File::options().write(true).open(&path).unwrap().set_modified(modified).unwrap();
     let (code, again, _) = scene.biplane(&["run"]);
     assert_eq!(code, 0);
-    assert!(again.contains("Nothing to do: 21 items cached."), "{again}");
+    assert!(again.contains("Nothing to do: 22 items cached."), "{again}");
     let table = |text: &str| text.split("\n\n").next().unwrap().to_owned();
     assert_eq!(table(&out), table(&again));
     let after: Vec<_> = ["poses.csv", "report.html"].map(|f| scene.read(&format!("results/{f}"))).into();
     assert_eq!(before, after);
     assert_eq!(std::fs::metadata(scene.path("results/poses.csv")).unwrap().modified().unwrap(), written);
-    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 21 items are cached\n");
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 22 items are cached\n");
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn a_changed_parameter_is_explained_and_a_comment_is_none() {
     let scene = Scene::new();
     assert_eq!(scene.biplane(&["run"]).0, 0);
     scene.edit("search_px = 20.0", "# as far as starts are wrong\nsearch_px = 20.0\nseed = 1");
-    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 21 items are cached\n");
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 22 items are cached\n");
     scene.edit("search_px = 20.0", "search_px = 25.0");
     let (_, why, _) = scene.biplane(&["explain", "match/*/0001"]);
     assert_eq!(why, "match/squat/0001/box: parameter search_px changed from 20 to 25\n");

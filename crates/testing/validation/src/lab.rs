@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use biplane_artifact::Curves;
-use biplane_geometry::Pose;
+use biplane_geometry::{Mesh, Pose};
+use biplane_lofting::LoftParams;
 use biplane_optimisation::{BinghamParams, MatchParams};
 use biplane_phantom::{Body, TrueFluoroscope, ideal_outline};
 use rayon::prelude::*;
 
 use crate::knee::{Posture, Workshop};
 use crate::scene::{Claim, Made, Origin};
+use crate::sliced::{contours_of_mri, loft, model};
 use crate::{Scene, SceneError};
 
 /// How much is measured.
@@ -71,6 +73,16 @@ impl Lab {
             .collect()
     }
 
+    /// The model of so many points that the stages make of a bone's simulated MRI: sagittal slices of 1 mm, pixels of 0.5 mm, the usual
+    /// faults.
+    ///
+    /// # Errors
+    /// The body is no bone, or a stage's own.
+    pub fn scanned(&self, body: Body, points: u32) -> Result<Mesh, SceneError> {
+        let contours = contours_of_mri(body, 0.5, 1.0, self.seed)?;
+        model(loft(&contours, &LoftParams::default())?, points)
+    }
+
     /// A scene of ideal outlines and a mesh of `points`, claiming accuracy.
     ///
     /// # Errors
@@ -82,8 +94,21 @@ impl Lab {
         views: &[TrueFluoroscope],
         frames: Frames,
     ) -> Result<Scene, SceneError> {
+        self.ideal_with(&*self.workshop.surface(body, points)?, views, frames)
+    }
+
+    /// A scene of ideal outlines and a mesh, claiming accuracy.
+    ///
+    /// # Errors
+    /// The mesh made the truth.
+    pub fn ideal_with(
+        &self,
+        mesh: &Mesh,
+        views: &[TrueFluoroscope],
+        frames: Frames,
+    ) -> Result<Scene, SceneError> {
         let made = Made { origin: Origin::Solid, claim: Claim::Accuracy, params: ideal_params() };
-        Scene::made(made, &*self.workshop.surface(body, points)?, &calibrations(views), frames)
+        Scene::made(made, mesh, &calibrations(views), frames)
     }
 }
 

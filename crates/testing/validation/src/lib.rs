@@ -18,6 +18,7 @@ mod scene;
 pub mod sections;
 mod setups;
 mod simulated_calibration;
+pub mod sliced;
 mod starts;
 pub mod summary;
 mod table;

@@ -7,6 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use biplane::calibrate::{CalibrateError, calibrate};
+use biplane::models::look::models;
 use biplane::prepare::{InputErrors, Prepared};
 use biplane::study::{Study, StudyError};
 use biplane::tables::same_frame;
@@ -165,11 +166,16 @@ pub fn read_reference(path: &Path) -> Result<Vec<(String, Pose)>, SceneError> {
     Ok(poses)
 }
 
-/// A body's mesh as the study reads it.
+/// A body's mesh as it is matched: read, or made from slices in `store`.
 ///
 /// # Errors
 /// The study, its inputs or the mesh cannot be read, or it has no such body.
-pub fn read_body(prepared: &Prepared, path: &Path, body: &str) -> Result<(usize, Mesh), SceneError> {
+pub fn read_body(
+    prepared: &Prepared,
+    store: &Store,
+    path: &Path,
+    body: &str,
+) -> Result<(usize, Mesh), SceneError> {
     let bodies = &prepared.study.bodies;
     let Some(index) = bodies.iter().position(|b| b.name == body) else {
         let known: Vec<&str> = bodies.iter().map(|b| b.name.as_str()).collect();
@@ -179,7 +185,10 @@ pub fn read_body(prepared: &Prepared, path: &Path, body: &str) -> Result<(usize,
             known: known.join(", "),
         });
     };
-    Ok((index, prepared.meshes[index].load().map_err(SceneError::Mesh)?.0.clone()))
+    let models = models(prepared, store, &Context::new());
+    let model = models.into_iter().nth(index).flatten();
+    let model = model.ok_or_else(|| SceneError::Mesh(format!("the model of {body} could not be made")))?;
+    Ok((index, model.load().map_err(SceneError::Mesh)?.0.clone()))
 }
 
 impl Scene {
@@ -195,7 +204,7 @@ impl Scene {
         let store = Store::open(&folder.path().join("store"))?;
         let (calibrated, _) = calibrate(&prepared, &store, &Context::new(), Way::Run(Vec::new()));
         let calibrated = calibrated?.unwrap_or_default();
-        let (index, mesh) = read_body(&prepared, pipeline, body)?;
+        let (index, mesh) = read_body(&prepared, &store, pipeline, body)?;
         let poses = read_reference(reference)?;
         let study = &prepared.study;
         let fluoroscopes: Vec<Fluoroscope> =

@@ -7,6 +7,7 @@ mod edges;
 mod end_to_end;
 mod environment;
 mod ideal;
+mod models;
 mod moved;
 mod natural;
 mod spheres;
@@ -41,6 +42,7 @@ pub const ALL: &[(&str, Measure)] = &[
     ("distortion", distortion::measure),
     ("environment", environment::measure),
     ("edges", edges::measure),
+    ("models", models::measure),
     ("end-to-end", end_to_end::measure),
     ("budget", end_to_end::budget),
     ("sweeps", sweeps::measure),
