@@ -25,8 +25,10 @@ const SPLITTING: usize = 12;
 const EXACT_ROUNDS: usize = 30;
 /// Rounds of moving alone, after the number is met.
 const SETTLING: usize = 6;
-/// Rounds in which crossings are mended.
-const MENDING: usize = 6;
+/// Rounds in which crossings are mended by taking lines away.
+const RELEASES: usize = 6;
+/// Rounds after that in which they are mended by more points.
+const REFINEMENTS: usize = 3;
 /// Steps of each vertex to undo a fold.
 const UNFOLDING: usize = 4;
 /// Smallest cosine between a triangle's normals before and after a step.
@@ -79,27 +81,29 @@ pub(crate) fn even(
     this.settle();
     let mut mesh = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
     let mut crossings = Surface::new(&mesh).self_crossings(points);
-    if !crossings.is_empty() && surface.self_crossings(1).is_empty() {
-        for round in 0..MENDING {
-            let before = (this.mesh.clone(), this.near.clone());
-            let touched = this.widened(this.of_triangles(&crossings), round / 2);
-            if round % 2 == 0 {
-                this.release(&touched)
-            } else {
-                this.refine(&touched)
-            }
-            let met = this.meet(points).is_ok();
-            this.settle();
-            let mended = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
-            let left = Surface::new(&mended).self_crossings(points);
-            if met && left.len() < crossings.len() {
-                (mesh, crossings) = (mended, left);
-            } else {
-                (this.mesh, this.near) = before;
-            }
-            if crossings.is_empty() {
-                break;
-            }
+    if crossings.is_empty() || !surface.self_crossings(1).is_empty() {
+        return Ok(mesh);
+    }
+    let mut fewest = crossings.len();
+    for round in 0..RELEASES + REFINEMENTS {
+        let touched = this.of_triangles(&crossings);
+        if round < RELEASES {
+            this.release(&touched)
+        } else {
+            this.refine(&touched)
+        }
+        if this.meet(points).is_err() {
+            break;
+        }
+        this.settle();
+        let mended = this.mesh.mesh().map_err(|_| ModelError::Vanished)?;
+        // It may go on elsewhere along the same lines before it ends.
+        crossings = Surface::new(&mended).self_crossings(points);
+        if crossings.len() < fewest {
+            (mesh, fewest) = (mended, crossings.len());
+        }
+        if crossings.is_empty() {
+            break;
         }
     }
     Ok(mesh)
@@ -373,18 +377,6 @@ impl Even<'_> {
         numbers.dedup();
         let firsts = numbers.iter().filter_map(|n| live.get(*n as usize));
         firsts.flat_map(|first| *first..*first + 3).collect()
-    }
-
-    /// With the triangles around them, and around those, as often as said.
-    fn widened(&self, mut halves: Vec<u32>, times: usize) -> Vec<u32> {
-        for _ in 0..times {
-            for half in halves.clone() {
-                self.mesh.fan(self.mesh.from[half as usize], |h| halves.extend([h, next(h), prev(h)]));
-            }
-            halves.sort_unstable();
-            halves.dedup();
-        }
-        halves
     }
 
     /// Takes the lines around some half-edges away: lines that are nearer to each other than points cross when they bend.

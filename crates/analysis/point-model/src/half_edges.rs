@@ -25,7 +25,6 @@ pub(crate) enum Hold {
     Fixed,
 }
 
-#[derive(Clone)]
 pub(crate) struct HalfEdges {
     pub at: Vec<Point3>,
     /// Where each half-edge begins; [`NONE`] for a triangle that is gone.
