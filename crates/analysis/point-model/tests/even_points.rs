@@ -147,7 +147,7 @@ fn pieces_stay_apart() {
 #[test]
 fn no_mesh_makes_it_panic_and_results_repeat() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
-    for round in 0..60 {
+    for round in 0..20 {
         let count = random.random_range(3..60_u32);
         let size = 10.0_f64.powi(random.random_range(-3..4));
         // Few different coordinates: triangles without width, in one plane, on top of each other.
@@ -187,6 +187,9 @@ fn real_meshes_go_through() {
         let size = original.bounding_box();
         let size = (size.1 - size.0).norm();
         for points in [3_500, 15_000] {
+            if points > 3_500 && !path.ends_with("femur0.stl") {
+                continue;
+            }
             for (how, model) in [
                 ("even", even_points(&original, points, 40.0)),
                 ("simplified", simplified(&original, points.min(original.vertices().len()), 40.0)),
