@@ -123,11 +123,10 @@ pub(crate) fn surface(stack: &Stack, params: &LoftParams) -> Result<Made, LoftEr
         SurfaceReport { method: "diagonal".to_owned(), contours: used, warnings, ..SurfaceReport::default() };
     let slice = stack.slices[present[0]].number;
     let mut mesh = Mesh::new(vertices, triangles).map_err(|_| LoftError::NoNeighbours { slice })?;
-    let report = SurfaceReport { unsmoothed_volume_mm3: mesh.signed_volume(), ..report };
     if params.closed && mesh.signed_volume() < 0.0 {
         mesh = mesh.inverted();
     }
-    Ok(Made { mesh, unmoved: None, report })
+    Ok(Made { mesh, unmoved: None, unsmoothed_volume_mm3: None, report })
 }
 
 /// Contours joined one to one, nearest first.

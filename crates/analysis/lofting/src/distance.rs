@@ -2,21 +2,23 @@
 //!
 //! Slices become layers of one grid ([`crate::layer`]), their regions are linked with those of the next slice ([`crate::links`]), and between
 //! each two slices a field is put together ([`crate::gap`]) of whose zero the triangles are made ([`crate::march`]) on levels about a cell
-//! apart. Four slices are held at a time.
+//! apart. Four slices are held at a time. Where smoothing is asked for the contours are moved first ([`crate::smooth`]), and the volume is that of
+//! the surface through those that were not.
 
 use std::rc::Rc;
 
 use biplane_artifact::SurfaceReport;
-use biplane_geometry::Mesh;
+use biplane_geometry::{Mesh, Vector3};
 
 use crate::dome::{Close, Dome, Profile, Trend};
 use crate::finish;
 use crate::gap::{Blend, Field};
-use crate::layer::{Grid, Joined, Layer, Run};
+use crate::layer::{Grid, Joined, Layer, LeftOut, Run};
 use crate::links::{Links, overlaps};
 use crate::march::{Level, Mesher};
 use crate::plane::Plane;
-use crate::stack::Stack;
+use crate::smooth::smoothed;
+use crate::stack::{Slice, Stack};
 use crate::stage::{Caps, Made};
 use crate::{LoftError, LoftParams};
 
@@ -43,39 +45,62 @@ const MARGIN: f64 = 4.0;
 pub(crate) fn surface(stack: &Stack, params: &LoftParams) -> Result<Made, LoftError> {
     let mut warnings = Vec::new();
     let grid = grid(stack, params.cell_mm, &mut warnings);
-    let mut layers: Vec<Layer> = Vec::with_capacity(stack.slices.len());
-    for slice in &stack.slices {
-        if slice.lost {
-            warnings.push(format!(
-                "slice {}: the bone is missing in it; the surface goes through from the slices beside it",
-                slice.number
-            ));
-        } else {
-            layers.push(Layer::of(slice, &grid, &mut warnings));
-        }
+    let (lost, slices): (Vec<&Slice>, Vec<&Slice>) = stack.slices.iter().partition(|s| s.lost);
+    for slice in lost {
+        warnings.push(format!(
+            "slice {}: the bone is missing in it; the surface goes through from the slices beside it",
+            slice.number
+        ));
     }
+    let mut left_out = LeftOut::default();
+    let layers: Vec<Layer> =
+        slices.iter().map(|s| Layer::of(s, &grid, &mut warnings, &mut left_out)).collect();
     if layers.iter().all(|l| l.regions.is_empty()) {
         return Err(LoftError::Small { cell_mm: grid.cell });
     }
-    let links = Links::of(&layers, params.reach);
-    let mut lofter = Lofter::new(&grid, &layers, &links, params.caps);
-    let mesher = lofter.run();
-    let rims = mesher.rims();
-    let (mut vertices, triangles) = (mesher.vertices, mesher.triangles);
+    warnings.extend(left_out.said(&grid));
+    let mut lofted = Lofted::of(&grid, &layers, params);
+    let mut unsmoothed_volume_mm3 = None;
+    if params.smoothing_mm > 0.0 {
+        finish::even(&mut lofted.vertices, &lofted.triangles, &lofted.rims);
+        unsmoothed_volume_mm3 = Some(finish::volume(&lofted.vertices, &lofted.triangles));
+        let moved = smoothed(&slices, &layers, &grid, params.smoothing_mm);
+        let (mut said, mut left_out) = (Vec::new(), LeftOut::default());
+        let again: Vec<Layer> = moved.iter().map(|s| Layer::of(s, &grid, &mut said, &mut left_out)).collect();
+        lofted = Lofted::of(&grid, &again, params);
+    }
+    let Lofted { mut vertices, triangles, rims } = lofted;
     let unmoved = vertices.iter().map(|v| stack.scanner((*v).into())).collect();
-    let volume = finish::volume(&vertices, &triangles);
-    finish::finish(&mut vertices, &triangles, &rims, params.smoothing_mm, grid.cell);
+    finish::even(&mut vertices, &triangles, &rims);
+    if let Some(volume) = unsmoothed_volume_mm3 {
+        finish::keep_volume(&mut vertices, &triangles, &rims, volume);
+    }
     let report = SurfaceReport {
         method: "distance".to_owned(),
         contours: layers.iter().flat_map(|l| &l.of_contour).filter(|c| **c != (None, None)).count(),
-        unsmoothed_volume_mm3: volume,
         warnings,
         ..SurfaceReport::default()
     };
     let vertices = vertices.into_iter().map(|v| stack.scanner(v.into())).collect();
     // A closed surface made of cells always has triangles with an area.
     let mesh = Mesh::new(vertices, triangles).map_err(|_| LoftError::Small { cell_mm: grid.cell })?;
-    Ok(Made { mesh, unmoved: Some(unmoved), report })
+    Ok(Made { mesh, unmoved: Some(unmoved), unsmoothed_volume_mm3, report })
+}
+
+/// A surface in the stack's frame, mm.
+struct Lofted {
+    vertices: Vec<Vector3>,
+    triangles: Vec<[u32; 3]>,
+    /// Whether a vertex lies on the rim of a lid.
+    rims: Vec<bool>,
+}
+
+impl Lofted {
+    fn of(grid: &Grid, layers: &[Layer], params: &LoftParams) -> Self {
+        let links = Links::of(layers, params.reach);
+        let mesher = Lofter::new(grid, layers, &links, params.caps).run();
+        Self { rims: mesher.rims(), vertices: mesher.vertices, triangles: mesher.triangles }
+    }
 }
 
 /// The grid: its cells as asked for, or from the contours' points and widths; larger where it would have too many nodes.

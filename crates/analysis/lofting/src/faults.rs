@@ -16,7 +16,7 @@ const MOST_NAMED: usize = 5;
 
 /// The surface with what the checks found.
 pub(crate) fn checked(stack: &Stack, made: Made) -> BoneSurface {
-    let Made { mut mesh, unmoved, mut report } = made;
+    let Made { mut mesh, unmoved, unsmoothed_volume_mm3, mut report } = made;
     let mut crossings = Surface::new(&mesh).self_crossings(MOST_CROSSINGS);
     let mut back = vec![false; mesh.vertices().len()];
     let mut taken = 0;
@@ -39,12 +39,13 @@ pub(crate) fn checked(stack: &Stack, made: Made) -> BoneSurface {
     }
     if taken > 0 {
         report.warnings.push(format!(
-            "{taken} of {} vertices were not smoothed: triangles would have crossed",
+            "{taken} of {} vertices stay unevenly spread: triangles would have crossed",
             back.len()
         ));
     }
     let check = MeshCheck::of(&mesh);
     report.volume_mm3 = check.signed_volume_mm3;
+    report.unsmoothed_volume_mm3 = unsmoothed_volume_mm3.unwrap_or(report.volume_mm3);
     report.area_mm2 = check.area_mm2;
     report.pieces = check.pieces;
     let middle = |vertices: &[u32]| {

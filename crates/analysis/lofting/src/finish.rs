@@ -1,11 +1,7 @@
-//! What is done to the vertices after the surface is made: triangles made more even, stairs smoothed, the volume kept.
+//! What is done to the vertices after the surface is made: triangles made more even, and a volume kept.
 //!
-//! **Evening.** Vertices on the edges of a grid make slivers. Each vertex moves towards the middle of its neighbours, along the
-//! surface only, and not where the surface has an edge.
-//!
-//! **Smoothing.** Taubin, "A signal processing approach to fair surface design" (1995): a step towards the middle of the neighbours and a slightly
-//! larger one away from it, so that what is long stays and what is short goes. What the volume has changed by is taken back by moving all
-//! vertices along their normals by one length.
+//! Vertices on the edges of a grid make slivers. Each vertex moves towards the middle of its neighbours, along the surface only, and not where
+//! the surface has an edge; on the rim of a flat lid along the rim.
 
 use biplane_geometry::Vector3;
 
@@ -14,9 +10,6 @@ const EVENING: usize = 4;
 const EVENING_SHARE: f64 = 0.6;
 /// A vertex whose triangles' normals add up to less than this share of their lengths lies on an edge of the surface.
 const STRAIGHT: f64 = 0.9;
-/// Taubin's steps.
-const SHRINK: f64 = 0.5;
-const GROW: f64 = -0.53;
 
 /// Volume within a closed surface, mm^3.
 pub(crate) fn volume(vertices: &[Vector3], triangles: &[[u32; 3]]) -> f64 {
@@ -64,15 +57,8 @@ fn around(vertices: &[Vector3], triangles: &[[u32; 3]], rims: &[bool], into: &mu
     }
 }
 
-/// Evens the triangles and smooths by `smoothing_mm` over triangles of about a `cell`.
-/// Those on the rim of a lid stay on it.
-pub(crate) fn finish(
-    vertices: &mut [Vector3],
-    triangles: &[[u32; 3]],
-    rims: &[bool],
-    smoothing_mm: f64,
-    cell: f64,
-) {
+/// Evens the triangles.
+pub(crate) fn even(vertices: &mut [Vector3], triangles: &[[u32; 3]], rims: &[bool]) {
     let mut all = Vec::new();
     for _ in 0..EVENING {
         around(vertices, triangles, rims, &mut all);
@@ -87,27 +73,16 @@ pub(crate) fn finish(
             }
         }
     }
-    if smoothing_mm <= 0.0 {
-        return;
-    }
-    let before = volume(vertices, triangles);
-    // A round moves what has a wavelength of a few triangles; it spreads by about half a triangle's side.
-    let rounds = (2.0 * (smoothing_mm / cell).powi(2)).ceil().clamp(1.0, 200.0) as usize;
-    for _ in 0..rounds {
-        for step in [SHRINK, GROW] {
-            around(vertices, triangles, rims, &mut all);
-            for ((v, of), rim) in vertices.iter_mut().zip(&all).zip(rims) {
-                if of.count > 0.0 && !rim {
-                    *v += step * (of.sum / of.count - *v);
-                }
-            }
-        }
-    }
+}
+
+/// Moves all vertices along their normals by one length, so that the volume becomes what is wanted; rims of lids stay.
+pub(crate) fn keep_volume(vertices: &mut [Vector3], triangles: &[[u32; 3]], rims: &[bool], wanted: f64) {
+    let mut all = Vec::new();
     // Twice: the area changes a little on the way.
     for _ in 0..2 {
         around(vertices, triangles, rims, &mut all);
         let area: f64 = all.iter().map(|of| of.area).sum::<f64>() / 6.0;
-        let off = (before - volume(vertices, triangles)) / area.max(f64::MIN_POSITIVE);
+        let off = (wanted - volume(vertices, triangles)) / area.max(f64::MIN_POSITIVE);
         for ((v, of), rim) in vertices.iter_mut().zip(&all).zip(rims) {
             if !rim {
                 *v += of.normal.try_normalize(0.0).unwrap_or_default() * off;

@@ -51,6 +51,35 @@ pub(crate) struct Region {
     pub centroid: [f64; 2],
 }
 
+/// Contours that are smaller than a cell of the grid.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LeftOut {
+    count: usize,
+    /// Area, slice and number of the largest.
+    largest: (f64, usize, usize),
+}
+
+impl LeftOut {
+    fn add(&mut self, slice: usize, contour: &Contour) {
+        let area = contour.area.abs();
+        if self.count == 0 || area > self.largest.0 {
+            self.largest = (area, slice, contour.number);
+        }
+        self.count += 1;
+    }
+
+    /// As a person reads it, if there are any.
+    pub fn said(&self, grid: &Grid) -> Option<String> {
+        let Self { count, largest: (area, slice, contour) } = self;
+        (*count > 0).then(|| {
+            format!(
+                "{count} contours smaller than a cell of the grid ({:.2} mm) are left out; the largest has {area:.2} mm^2: slice {slice}, contour {contour}",
+                grid.cell
+            )
+        })
+    }
+}
+
 /// What a contour parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -95,8 +124,8 @@ struct Pass {
 }
 
 impl Layer {
-    /// What a person should know is added to `warnings`.
-    pub fn of(slice: &Slice, grid: &Grid, warnings: &mut Vec<String>) -> Self {
+    /// What a person should know is added to `warnings`, what is too small for the grid to `left_out`.
+    pub fn of(slice: &Slice, grid: &Grid, warnings: &mut Vec<String>, left_out: &mut LeftOut) -> Self {
         let contours = &slice.contours;
         let all = sides(contours);
         let crossed = crossings(&all);
@@ -131,21 +160,13 @@ impl Layer {
             .filter(|s| layer.of_contour[s.contour as usize] != (None, None))
             .collect();
         for (c, contour) in contours.iter().enumerate() {
-            let lost = layer.of_contour[c] == (None, None);
-            if lost || kinds[c] == Kind::Nothing {
-                warnings.push(match kinds[c] {
-                    Kind::Nothing => format!(
-                        "slice {}: contour {} lies in another of the same sense and changes nothing",
-                        slice.number, contour.number
-                    ),
-                    _ => format!(
-                        "slice {}: contour {}, {:.2} mm^2, is smaller than a cell of the grid ({:.2} mm) and is left out",
-                        slice.number,
-                        contour.number,
-                        contour.area.abs(),
-                        grid.cell
-                    ),
-                });
+            if kinds[c] == Kind::Nothing {
+                warnings.push(format!(
+                    "slice {}: contour {} lies in another of the same sense and changes nothing",
+                    slice.number, contour.number
+                ));
+            } else if layer.of_contour[c] == (None, None) {
+                left_out.add(slice.number, contour);
             }
         }
         layer

@@ -25,6 +25,7 @@ mod links;
 mod march;
 mod plane;
 mod self_crossing;
+mod smooth;
 mod stack;
 mod stage;
 

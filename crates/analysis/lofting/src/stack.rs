@@ -53,7 +53,8 @@ pub(crate) struct Contour {
 }
 
 impl Contour {
-    fn of(number: usize, points: Vec<[f64; 2]>) -> Self {
+    /// Of points whose neighbours differ.
+    pub fn of(number: usize, points: Vec<[f64; 2]>) -> Self {
         let sides = || points.iter().zip(points.iter().cycle().skip(1));
         let [o, ..] = points[..] else {
             let zero = [0.0; 2];

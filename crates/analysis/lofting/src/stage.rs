@@ -53,7 +53,8 @@ pub struct LoftParams {
     /// centre and off the way it had, in mean widths of the two. 0 to 5.
     #[schemars(range(min = 0.0, max = 5.0))]
     pub reach: f64,
-    /// For `distance`: how far the stairs of thick slices are smoothed along the surface, mm, with the volume kept; 0 does not. 0 to 10.
+    /// For `distance`: against the stairs of thick slices, contours that are unlike the two slices below and above them are moved by up to half
+    /// this, mm, with the volume kept; what is off by much more is taken for shape. 0 (none) to 10.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub smoothing_mm: f64,
     /// For `diagonal`: whether contours are closed. If not, none is joined from its last point to its first.
@@ -241,6 +242,8 @@ pub(crate) struct Made {
     pub mesh: biplane_geometry::Mesh,
     /// Its vertices before they were moved along and across the surface; none where nothing was moved.
     pub unmoved: Option<Vec<biplane_geometry::Point3>>,
+    /// Its volume before it was smoothed; none where it was not.
+    pub unsmoothed_volume_mm3: Option<f64>,
     /// What is known without checks.
     pub report: SurfaceReport,
 }
