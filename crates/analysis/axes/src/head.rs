@@ -5,6 +5,9 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::shape::Shape;
 
+/// What is farther from the sphere than this is no part of it.
+const NEAR_MM: f64 = 4.0;
+
 /// A sphere.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
@@ -42,19 +45,31 @@ pub(crate) fn fit(shape: &Shape, up: &Vector3, on_shaft: &Vector3, floor: f64) -
     }
     let first = normal.lu().solve(&right)?;
     let (mut centre, mut radius) = (first.xyz(), first.w);
-    let (mut scale, mut rms) = (2.0_f64, f64::INFINITY);
+    let mut rms = f64::INFINITY;
     for _ in 0..60 {
-        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-        let (mut total, mut squares) = (0.0, 0.0);
+        let mut near: Vec<(f64, f64, Vector3)> = Vec::new();
         for s in &block {
             let d = s.at - centre;
             let far = d.norm();
             let (e, r) = (d / far.max(1e-9), far - radius);
-            let u = r / (4.7 * scale);
-            if u.abs() >= 1.0 || s.normal.dot(&e) < 0.7 {
-                continue;
+            // The neck and the pit of the ligament face another way.
+            if r.abs() < NEAR_MM && s.normal.dot(&e) > 0.9 {
+                near.push((r, s.area, e));
             }
-            let w = s.area * (1.0 - u * u).powi(2);
+        }
+        near.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        let half = near.iter().map(|(_, area, _)| area).sum::<f64>() / 2.0;
+        let mut sum = 0.0;
+        let median = near.iter().find(|(_, area, _)| {
+            sum += area;
+            sum >= half
+        });
+        let scale = (1.4826 * median.map_or(0.0, |(r, ..)| r.abs())).clamp(0.1, 1.0);
+        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        let (mut total, mut squares) = (0.0, 0.0);
+        for (r, area, e) in &near {
+            let u = (r / (4.7 * scale)).clamp(-1.0, 1.0);
+            let w = area * (1.0 - u * u).powi(2);
             let j = Vector4::new(-e.x, -e.y, -e.z, -1.0);
             normal += j * j.transpose() * w;
             right -= j * (r * w);
@@ -65,7 +80,6 @@ pub(crate) fn fit(shape: &Shape, up: &Vector3, on_shaft: &Vector3, floor: f64) -
         centre += step.xyz();
         radius += step.w;
         rms = (squares / total).sqrt();
-        scale = (0.7 * scale).max((1.2 * rms).max(0.2));
         if step.norm() < 1e-10 {
             break;
         }

@@ -16,11 +16,11 @@
 //! **Not guaranteed:** that a proposal is what an anatomist would say. It is a start that wants a look.
 
 mod condyles;
+mod femoral_component;
 mod femur;
 mod figures;
 mod frame;
 mod head;
-mod implants;
 mod landmarks;
 mod moments;
 mod patella;
@@ -32,6 +32,7 @@ mod shape;
 mod stage;
 mod symmetry;
 mod tibia;
+mod tray;
 
 pub use landmarks::landmark_names;
 pub use stage::{Axes, AxesError, AxesInputs, AxesParams, ModelFrame, body_axes};

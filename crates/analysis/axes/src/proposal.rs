@@ -6,7 +6,7 @@ use biplane_geometry::Vector3;
 use crate::frame::Frame;
 use crate::landmarks::{self, Given, Marks};
 use crate::shape::Shape;
-use crate::{femur, figures, implants, patella, tibia};
+use crate::{femoral_component, femur, figures, patella, tibia, tray};
 
 /// Triangles below which nothing is proposed: the fits need surfaces, not corners.
 const LEAST_TRIANGLES: usize = 300;
@@ -70,8 +70,8 @@ pub(crate) fn of(body: BodyKind, shape: &Shape) -> Result<Proposal, Refusal> {
         BodyKind::Femur => femur::propose(shape)?,
         BodyKind::Tibia => tibia::propose(shape)?,
         BodyKind::Patella => patella::propose(shape)?,
-        BodyKind::FemoralComponent => implants::propose_femoral(shape)?,
-        BodyKind::TibialTray => implants::propose_tray(shape)?,
+        BodyKind::FemoralComponent => femoral_component::propose(shape)?,
+        BodyKind::TibialTray => tray::propose(shape)?,
         BodyKind::Other => other(shape),
     };
     if shape.open_edges > 0 && body != BodyKind::Other {

@@ -25,8 +25,10 @@ inputs! {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelFrame {
-    /// It is not known: up, down, front and back are told by the shape alone.
+    /// `lps` for a body from slices, `unknown` for one from a mesh file.
     #[default]
+    Auto,
+    /// It is not known: up, down, front and back are told by the shape alone.
     Unknown,
     /// Left-posterior-superior, as of an MRI or CT of a subject who lies straight: what is up and in front is then known, within some
     /// 40 degrees.
@@ -40,7 +42,7 @@ pub struct AxesParams {
     /// What the body is; decides how its axes are found.
     #[schemars(schema_with = "bodies")]
     pub body: BodyKind,
-    /// Side of the subject; has to be said for all bodies but `other`.
+    /// Side of the subject; has to be said for all bodies but `other`, which is taken for one of the right side where it is not.
     #[schemars(schema_with = "sides")]
     pub side: Option<Side>,
     /// In which frame the mesh's coordinates are.
@@ -60,7 +62,7 @@ fn sides(_: &mut SchemaGenerator) -> Schema {
 
 impl Default for AxesParams {
     fn default() -> Self {
-        Self { body: BodyKind::Other, side: None, frame: ModelFrame::Unknown }
+        Self { body: BodyKind::Other, side: None, frame: ModelFrame::Auto }
     }
 }
 

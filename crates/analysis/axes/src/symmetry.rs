@@ -10,6 +10,8 @@ use nalgebra::{Matrix3, Vector3 as Unknowns};
 use crate::frame::square_to;
 use crate::shape::Shape;
 
+/// Above this a body is hardly its own mirror image: misfit over size.
+pub(crate) const ASYMMETRIC: f64 = 0.018;
 /// Places that are mirrored.
 const MIRRORED: usize = 1_500;
 /// Places that they are held against.
