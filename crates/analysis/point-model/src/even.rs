@@ -18,13 +18,13 @@ use crate::half_edges::{HalfEdges, Hold, NONE, next, prev};
 use crate::lines;
 
 /// Rounds in which the length follows the number of points.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 6;
 /// Rounds of splitting: an edge of 100 mm is shorter than 0.03 mm after twelve.
 const SPLITTING: usize = 12;
 /// Rounds in which the number is met exactly.
 const EXACT_ROUNDS: usize = 30;
 /// Rounds of moving alone, after the number is met.
-const SETTLING: usize = 6;
+const SETTLING: usize = 4;
 /// Rounds in which crossings are mended by taking lines away.
 const RELEASES: usize = 6;
 /// Rounds after that in which they are mended by more points.
