@@ -730,7 +730,7 @@ impl Check {
         let axes = axes.map(|axes| {
             let mut axes = axes.into_inner();
             // A surface from slices is in the scanner's frame.
-            if surface.bone().is_some() && axes.frame == ModelFrame::Unknown {
+            if surface.bone().is_some() && axes.frame == ModelFrame::Auto {
                 axes.frame = ModelFrame::Lps;
             }
             axes

@@ -17,8 +17,8 @@ const COLOURS: [[f32; 3]; 5] = [
     [238.0, 142.0, 104.0],
     [176.0, 16.0, 38.0],
 ];
-/// Rectangles that the bar is made of.
-const BAR: usize = 40;
+/// Steps of colour on the surface and the bar; even, so that no step holds distances of both signs.
+const STEPS: usize = 30;
 
 /// The distances of two meshes from each other.
 #[derive(Debug)]
@@ -44,13 +44,16 @@ impl DistanceMap {
 
     /// The colour of a distance.
     pub(super) fn colour(&self, value: f32) -> [f32; 3] {
-        colour(value / self.limit_mm as f32)
+        let share = (value / self.limit_mm as f32).clamp(-1.0, 1.0);
+        let half = STEPS as f32 / 2.0;
+        colour(((share * half).floor() + 0.5).min(half - 0.5) / half)
     }
 }
 
-/// The end of a scale that holds a value: 1, 2 or 5 times a power of ten, from 0.05 mm on.
+/// The end of a scale that holds a value: a round number, from 0.05 mm on.
 fn limit(value: f64) -> f64 {
-    let steps = (-2..=6).flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * 10.0_f64.powi(power)));
+    let steps =
+        (-2..=6).flat_map(|power| [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0].map(|m| m * 10.0_f64.powi(power)));
     steps.filter(|s| *s >= 0.05).find(|s| *s >= value).unwrap_or(1e7)
 }
 
@@ -66,9 +69,9 @@ fn colour(share: f32) -> [f32; 3] {
 /// The bar and the numbers, from `corner` down in a column of a width; returns where they end.
 pub(super) fn draw_bar(svg: &mut Svg, map: &DistanceMap, corner: [f64; 2], height: f64) -> f64 {
     let [x, y] = corner;
-    let step = height / BAR as f64;
-    for n in 0..BAR {
-        let share = 1.0 - 2.0 * (n as f32 + 0.5) / BAR as f32;
+    let step = height / STEPS as f64;
+    for n in 0..STEPS {
+        let share = 1.0 - 2.0 * (n as f32 + 0.5) / STEPS as f32;
         let [r, g, b] = colour(share).map(|c| c as u8);
         svg.group(super::svg::Style::area("bar", &format!("#{r:02x}{g:02x}{b:02x}")), |svg| {
             // A little higher than a step, so that no gap shows between two.
@@ -107,7 +110,7 @@ mod tests {
         assert_eq!(colour(0.0), COLOURS[2]);
         assert_eq!((colour(-7.0), colour(f32::INFINITY)), (COLOURS[0], COLOURS[4]));
         assert_eq!(colour(f32::NAN), COLOURS[0]);
-        let limits = [0.0, 0.051, 0.2, 0.21, 3e9].map(limit);
-        assert_eq!(limits, [0.05, 0.1, 0.2, 0.5, 1e7]);
+        let limits = [0.0, 0.051, 0.2, 0.31, 3e9].map(limit);
+        assert_eq!(limits, [0.05, 0.07, 0.2, 0.4, 1e7]);
     }
 }

@@ -37,6 +37,12 @@ pub(super) fn tips(axes: &BodyAxes, length_mm: f64) -> [Point3; 3] {
     axes.axes.map(|a| Point3::from(axes.origin_mm) + Vector3::from(a) * length_mm)
 }
 
+/// Places that the spheres and cylinders reach to.
+pub(super) fn reaches(axes: &BodyAxes) -> Vec<Point3> {
+    let round = |f: &&AxesFeature| matches!(f, AxesFeature::Sphere { .. } | AxesFeature::Cylinder { .. });
+    axes.features.iter().filter(round).flat_map(|f| lines(f, axes)).flat_map(|(line, _)| line).collect()
+}
+
 /// A figure as lines, each with whether it is closed; a point has none.
 fn lines(figure: &AxesFeature, axes: &BodyAxes) -> Vec<(Vec<Point3>, bool)> {
     let circle = |centre: Point3, u: Vector3, v: Vector3, radius: f64| {
@@ -97,11 +103,13 @@ fn named(figure: &AxesFeature) -> (&str, Point3) {
     }
 }
 
-/// The figures, over a picture that was drawn through the camera; `plain` leaves out what would crowd a small picture.
+/// The figures, over a picture that was drawn through the camera; `plain` leaves out planes, which would
+/// crowd a small picture.
 pub(super) fn draw_figures(svg: &mut Svg, axes: &BodyAxes, picture: &Picture, camera: &Camera, plain: bool) {
     let width = if plain { 0.9 } else { 1.5 };
-    for figure in &axes.features {
-        if let AxesFeature::Plane { .. } = figure {
+    let is_plane = |f: &AxesFeature| matches!(f, AxesFeature::Plane { .. });
+    for figure in axes.features.iter().filter(|_| !plain) {
+        if is_plane(figure) {
             for (line, _) in lines(figure, axes) {
                 let disc = Style { opacity: 0.12, ..Style::area("disc", FIGURE) };
                 svg.group(disc, |svg| svg.polygon(&line.iter().map(|p| camera.onto(p)).collect::<Vec<_>>()));
@@ -109,12 +117,13 @@ pub(super) fn draw_figures(svg: &mut Svg, axes: &BodyAxes, picture: &Picture, ca
         }
     }
     let mut parts = [Vec::new(), Vec::new()];
-    for (line, closed) in axes.features.iter().flat_map(|f| lines(f, axes)) {
+    let figures = axes.features.iter().filter(|f| !plain || !is_plane(f));
+    for (line, closed) in figures.flat_map(|f| lines(f, axes)) {
         let [seen, hidden] = picture.parted(&line, closed);
         parts[0].extend(seen);
         parts[1].extend(hidden);
     }
-    let hidden = Style { opacity: 0.55, ..Style::line("figure-hidden", FIGURE, 0.7 * width) };
+    let hidden = Style { opacity: 0.6, ..Style::line("figure-hidden", FIGURE, 0.8 * width) };
     for (style, parts) in [(hidden, &parts[1]), (Style::line("figure", FIGURE, width), &parts[0])] {
         if !parts.is_empty() {
             svg.group(style, |svg| svg.strokes(parts, false));

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use biplane_artifact::{
-    BodyAxes, BodyKind, BoneSurface, Drawing, ModelMesh, Side, SliceContours, SurfaceReport,
+    BodyAxes, BodyKind, BoneSurface, Drawing, ModelMesh, Side, SliceContours, SliceFlag, SurfaceReport,
 };
 use biplane_geometry::{Mesh, Point3, Vector3};
 use biplane_stage::{Context, Stage, inputs};
@@ -15,7 +15,7 @@ use super::DrawingError;
 use super::camera::{Camera, Directions, Viewpoint};
 use super::colours::{FAINT, INK, Level, RULE};
 use super::distance_map::{DistanceMap, draw_bar};
-use super::figures::{draw_axes, draw_figures, source, tips, write_names};
+use super::figures::{draw_axes, draw_figures, reaches, source, tips, write_names};
 use super::labels::Labels;
 use super::shaded::{Paint, Picture, Shape, shaded};
 use super::sheet::{Fact, MARGIN, SMALL, TEXT, WIDTH, facts, quantity, shortened, wrapped};
@@ -37,8 +37,8 @@ const MOST_SLICES: usize = 60;
 const MOST_NAMED: usize = 10;
 /// Length of the axes, in half diagonals of the body.
 const AXES: f64 = 0.62;
-const CONTOUR: &str = "#0b6fae";
-const RED: &str = "#d3202c";
+/// Colours of slices of which nothing is said, that meet the volume's border, that are alarming.
+const SLICES: [&str; 3] = ["#0b6fae", "#b35900", "#d3202c"];
 
 inputs! {
     /// A body's model and, where there are such, its axes, the contours and the surface it was made from, and a mesh to compare it
@@ -190,13 +190,16 @@ impl<'a> Body<'a> {
 
     /// A camera that shows all of the body, and its axes where there are some.
     fn camera(&self, from: Viewpoint, size: [f64; 2], in_perspective: bool) -> Camera {
-        let tips: Vec<Point3> = self.shown.axes.map_or(Vec::new(), |a| tips(a, self.axis_mm).into());
+        let marks: Vec<Point3> = self
+            .shown
+            .axes
+            .map_or(Vec::new(), |a| tips(a, self.axis_mm).into_iter().chain(reaches(a)).collect());
         let vertices = self.model.vertices();
         let used = self.model.triangles().iter().flatten().map(move |v| &vertices[*v as usize]);
-        // Axes far away would make the body a dot.
+        // Marks far away would make the body a dot.
         let (low, high) = self.model.bounding_box();
         let room = (high - low).norm();
-        let near = tips.iter().filter(|t| (*t - nalgebra::center(&low, &high)).norm() <= 1.5 * room);
+        let near = marks.iter().filter(|t| (*t - nalgebra::center(&low, &high)).norm() <= 0.9 * room);
         Camera::fitted(self.directions.frame(from), used.chain(near), size, ROOM, in_perspective)
     }
 
@@ -278,7 +281,7 @@ impl Body<'_> {
             facts.push(plain("from", from));
             let change = 100.0 * (surface.volume_mm3 / surface.unsmoothed_volume_mm3 - 1.0);
             let level = Level::of(change.abs(), 1.0);
-            facts.push(("volume changed by smoothing", quantity(change, 3, "%"), level));
+            facts.push(("volume changed by smoothing", unsigned_zero(change, 3, "%"), level));
             facts.push(plain("pieces then", surface.pieces.to_string()));
             let level = if surface.faults.is_empty() { Level::Good } else { Level::Bad };
             facts.push(("faults", surface.faults.len().to_string(), level));
@@ -304,6 +307,15 @@ fn body_name(axes: &BodyAxes) -> String {
     match axes.side {
         Side::Left => format!("left {body}"),
         Side::Right => format!("right {body}"),
+    }
+}
+
+/// As [`quantity`], without the sign of a number that is shown as 0.
+fn unsigned_zero(value: f64, decimals: usize, unit: &str) -> String {
+    let text = quantity(value, decimals, unit);
+    match text.strip_prefix('-') {
+        Some(size) if !size.contains(|c: char| ('1'..='9').contains(&c)) => size.to_owned(),
+        _ => text,
     }
 }
 
@@ -354,8 +366,8 @@ fn heading(svg: &mut Svg, body: &Body) -> f64 {
     svg.text([MARGIN, y], Font::new(TEXT, INK), &caption);
     if let Some(axes) = body.shown.axes {
         let (text, level) = source(axes);
-        let x = MARGIN + text_width(&caption, TEXT) + 14.0;
-        svg.text([x, y], Font::new(TEXT, level.ink()).bold(), text);
+        let font = Font::new(TEXT, level.ink()).bold().anchored(Anchor::End);
+        svg.text([WIDTH - MARGIN, y + 4.0], font, text);
     }
     y
 }
@@ -417,13 +429,42 @@ fn scale_bar(svg: &mut Svg, camera: &Camera) {
     svg.text([left, y - 5.0], Font::new(SMALL - 1.0, INK), &quantity(mm, decimals, "mm"));
 }
 
-/// Which slices are shown: evenly chosen ones, and all that want a look.
-fn shown_slices(contours: &SliceContours, marked: &BTreeSet<usize>) -> Vec<usize> {
+/// What is said of a slice.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Said {
+    words: Vec<String>,
+    /// Whether it is something to look at, and not only that the bone goes on beyond the volume.
+    alarming: bool,
+}
+
+/// The flags of the slices, and the faults of the surface beside them.
+fn said(contours: &SliceContours, surface: Option<&SurfaceReport>) -> BTreeMap<usize, Said> {
+    let mut said: BTreeMap<usize, Said> = BTreeMap::new();
+    for (k, slice) in contours.slices.iter().enumerate() {
+        for flag in &slice.flags {
+            let of_slice = said.entry(k).or_default();
+            of_slice.words.push(crate::slices::words(*flag).to_owned());
+            of_slice.alarming |= !matches!(flag, SliceFlag::TouchesBorder | SliceFlag::CutOff);
+        }
+    }
+    for fault in surface.iter().flat_map(|s| &s.faults) {
+        if let Some(slice) = fault.slice {
+            let of_slice = said.entry(slice).or_default();
+            of_slice.words.push(fault.what.clone());
+            of_slice.alarming = true;
+        }
+    }
+    said
+}
+
+/// Which slices are shown: evenly chosen ones, and all that are alarming.
+fn shown_slices(contours: &SliceContours, said: &BTreeMap<usize, Said>) -> Vec<usize> {
     let with: Vec<usize> =
         (0..contours.slices.len()).filter(|k| !contours.slices[*k].contours.is_empty()).collect();
     let every = with.len().div_ceil(MOST_SLICES).max(1);
-    let chosen = |n: usize, k: usize| n % every == 0 || n + 1 == with.len() || marked.contains(&k);
-    with.iter().enumerate().filter(|(n, k)| chosen(*n, **k)).map(|(_, k)| *k).collect()
+    let alarming = |k: &usize| said.get(k).is_some_and(|s| s.alarming);
+    let chosen = |n: usize, k: &usize| n % every == 0 || n + 1 == with.len() || alarming(k);
+    with.iter().enumerate().filter(|(n, k)| chosen(*n, k)).map(|(_, k)| *k).collect()
 }
 
 /// The points of a contour that are apart in the picture.
@@ -432,7 +473,7 @@ fn thinned(points: Vec<[f64; 3]>, camera: &Camera) -> Vec<Point3> {
     let mut last = [f64::INFINITY; 2];
     for p in points.into_iter().map(Point3::from) {
         let at = camera.onto(&p);
-        if (at[0] - last[0]).hypot(at[1] - last[1]) > 2.0 {
+        if (at[0] - last[0]).hypot(at[1] - last[1]) > 3.0 {
             kept.push(p);
             last = at;
         }
@@ -447,28 +488,17 @@ fn slices_panel(
     contours: &SliceContours,
     corner: [f64; 2],
 ) -> Result<(), DrawingError> {
-    // What is said of a slice: its flags, and faults of the surface beside it.
-    let mut said: BTreeMap<usize, Vec<String>> = BTreeMap::new();
-    for (k, slice) in contours.slices.iter().enumerate() {
-        for flag in &slice.flags {
-            said.entry(k).or_default().push(crate::slices::words(*flag).to_owned());
-        }
-    }
-    for fault in body.shown.surface.iter().flat_map(|s| &s.faults) {
-        if let Some(slice) = fault.slice {
-            said.entry(slice).or_default().push(fault.what.clone());
-        }
-    }
-    let marked: BTreeSet<usize> = said.keys().copied().collect();
-    let slices = shown_slices(contours, &marked);
+    let said = said(contours, body.shown.surface);
+    let slices = shown_slices(contours, &said);
     let title = format!("with the contours of its slices, {}", body.directions.name(Viewpoint::Corner));
     let inside = framed(svg, corner, PANEL, &title);
     let camera = body.camera(Viewpoint::Corner, PANEL, false);
     let picture = shaded(&body.shape, &camera, Paint::Plain { faded: 0.25 })?;
-    let (mut plain, mut red) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    // Lines that are seen and that are hidden, of slices of which nothing is said, that meet the border, that are alarming.
+    let mut lines: [[Vec<Vec<[f64; 2]>>; 2]; 3] = Default::default();
     let mut places: Vec<(usize, [f64; 2])> = Vec::new();
     for &k in &slices {
-        let parts = if marked.contains(&k) { &mut red } else { &mut plain };
+        let parts = &mut lines[kind(said.get(&k))];
         let mut leftmost: Option<[f64; 2]> = None;
         for c in 0..contours.slices[k].contours.len() {
             let line = thinned(contours.points_mm(k, c), &camera);
@@ -484,15 +514,18 @@ fn slices_panel(
         places.extend(leftmost.map(|at| (k, at)));
     }
     pictured(svg, inside, PANEL, &picture, |svg| {
-        let faint = |colour| Style { opacity: 0.22, ..Style::line("contour-hidden", colour, 0.7) };
-        for (style, lines) in [
-            (faint(CONTOUR), &plain[1]),
-            (faint(RED), &red[1]),
-            (Style::line("contour", CONTOUR, 1.0), &plain[0]),
-            (Style::line("contour-flagged", RED, 1.8), &red[0]),
-        ] {
-            if !lines.is_empty() {
-                svg.group(style, |svg| svg.strokes(lines, false));
+        for (parts, colour) in lines.iter().zip(SLICES) {
+            let faint = Style { opacity: 0.22, ..Style::line("contour-hidden", colour, 0.7) };
+            if !parts[1].is_empty() {
+                svg.group(faint, |svg| svg.strokes(&parts[1], false));
+            }
+        }
+        for ((parts, colour), class) in
+            lines.iter().zip(SLICES).zip(["contour", "contour-border", "contour-flagged"])
+        {
+            let width = if class == "contour-flagged" { 1.9 } else { 1.0 };
+            if !parts[0].is_empty() {
+                svg.group(Style::line(class, colour, width), |svg| svg.strokes(&parts[0], false));
             }
         }
         slice_names(svg, &places, &said);
@@ -505,32 +538,44 @@ fn slices_panel(
     };
     let y = inside[1] + PANEL[1] + 19.0;
     let mut x = inside[0];
-    for (colour, word) in [(CONTOUR, note.as_str()), (RED, "look at it: flagged, or a fault beside it")] {
+    for (colour, word) in SLICES.into_iter().zip([note.as_str(), "cut off by the volume", "look at it"]) {
         svg.group(Style::area("swatch", colour), |svg| svg.rectangle([x, y - 7.0], [22.0, 4.0]));
         svg.text([x + 28.0, y], Font::new(SMALL, INK), word);
-        x += 28.0 + text_width(word, SMALL) + 22.0;
+        x += 28.0 + 0.9 * text_width(word, SMALL) + 22.0;
     }
     Ok(())
 }
 
-/// The numbers of the first and last slice, and of those that want a look with what is wrong.
-fn slice_names(svg: &mut Svg, places: &[(usize, [f64; 2])], said: &BTreeMap<usize, Vec<String>>) {
+fn kind(said: Option<&Said>) -> usize {
+    said.map_or(0, |s| if s.alarming { 2 } else { 1 })
+}
+
+/// The numbers of the first and last slice, and of runs of slices of which something is said, with what.
+fn slice_names(svg: &mut Svg, places: &[(usize, [f64; 2])], said: &BTreeMap<usize, Said>) {
     let mut labels = Labels::new([0.0, 0.0], PANEL, std::iter::empty());
-    let ends = [places.first(), places.last()].into_iter().flatten().map(|(k, _)| *k);
-    let ends: BTreeSet<usize> = ends.collect();
-    let mut named = 0;
-    for (k, at) in places {
-        let (text, colour) = match said.get(k) {
-            Some(_) if named >= MOST_NAMED => continue,
-            Some(what) => {
-                named += 1;
-                (shortened(&format!("{k}: {}", what.join(", ")), 40), RED)
-            }
-            None if ends.contains(k) => (format!("slice {k}"), CONTOUR),
-            None => continue,
+    // First and last slice of each run, what is said, and where it is written.
+    let mut runs: Vec<(usize, usize, Option<&Said>, [f64; 2])> = Vec::new();
+    for (n, (k, at)) in places.iter().enumerate() {
+        let what = said.get(k);
+        match runs.last_mut() {
+            Some(run) if what.is_some() && run.2 == what => run.1 = *k,
+            _ if what.is_some() || n == 0 || n + 1 == places.len() => runs.push((*k, *k, what, *at)),
+            // A slice of which nothing is said ends a run.
+            _ => runs.push((*k, *k, None, [f64::NAN; 2])),
+        }
+    }
+    runs.retain(|run| !run.3[0].is_nan());
+    // What is alarming first, so that it has the best places.
+    runs.sort_by_key(|run| std::cmp::Reverse(kind(run.2)));
+    for (first, last, what, at) in runs.into_iter().take(MOST_NAMED + 2) {
+        let number =
+            if first == last { format!("slice {first}") } else { format!("slices {first} to {last}") };
+        let text = match what {
+            Some(said) => shortened(&format!("{number}: {}", said.words.join(", ")), 44),
+            None => number,
         };
-        let place = labels.place(*at, 3.0, &text, SMALL);
-        svg.text(place, Font::new(SMALL, colour).bold(), &text);
+        let place = labels.place(at, 3.0, &text, SMALL);
+        svg.text(place, Font::new(SMALL, SLICES[kind(what)]).bold(), &text);
     }
 }
 
@@ -549,9 +594,9 @@ fn axes_panel(svg: &mut Svg, body: &Body, axes: &BodyAxes, corner: [f64; 2]) -> 
     let (text, level) = source(axes);
     let y = inside[1] + PANEL[1] + 19.0;
     svg.text([inside[0], y], Font::new(SMALL, level.ink()).bold(), text);
-    let origin = axes.origin_mm.map(|v| quantity(v, 1, "")).join(", ");
+    let origin = axes.origin_mm.map(|v| unsigned_zero(v, 1, "")).join(", ");
     let font = Font::new(SMALL, FAINT).anchored(Anchor::End);
-    let note = format!("origin at {origin} mm; dashed: inside the body");
+    let note = format!("origin at {origin} mm");
     svg.text([inside[0] + PANEL[0], y], font, &note);
     Ok(())
 }

@@ -160,7 +160,7 @@ pub(super) fn shaded(shape: &Shape, camera: &Camera, paint: Paint) -> Result<Pic
     let nearness = |d: f32| dots.nearness_of(f64::from(d)) as f32;
     let bytes = buffer.averaged(step, nearness);
     let mut png = Vec::new();
-    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive).write_image(
+    PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive).write_image(
         &bytes,
         (size[0] / AVERAGED) as u32,
         (size[1] / AVERAGED) as u32,
@@ -259,13 +259,14 @@ fn colour(normal: [f32; 3], faces: bool, value: f32, paint: Paint) -> [u8; 3] {
     let lambert = dot(normal, LIGHT).max(0.0);
     // Towards the outline a surface gets a little darker, as round things do.
     let rim = 0.80 + 0.20 * (normal[2].max(0.0) * 1.8).min(1.0);
-    let light = ((AMBIENT + (1.0 - AMBIENT) * lambert) * rim * STEPS).round() / STEPS;
-    let (base, faded) = match paint {
-        _ if !faces => (INSIDE, 0.0),
-        Paint::Plain { faded } => (BONE, faded),
-        // Colours that mean something are kept brighter, so that they can be read.
-        Paint::Values { colour, .. } => (colour(value), 0.25),
+    let (base, faded, ambient) = match paint {
+        _ if !faces => (INSIDE, 0.0, AMBIENT),
+        Paint::Plain { faded } => (BONE, faded, AMBIENT),
+        // Colours that mean something are lit more evenly, so that they can be read.
+        Paint::Values { colour, .. } => (colour(value), 0.0, 0.6),
     };
+    let steps = if matches!(paint, Paint::Values { .. }) { STEPS / 3.0 } else { STEPS };
+    let light = ((ambient + (1.0 - ambient) * lambert) * rim * steps).round() / steps;
     base.map(|c| {
         let lit = c * light;
         (lit + (255.0 - lit) * faded).clamp(0.0, 255.0) as u8
