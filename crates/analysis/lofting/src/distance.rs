@@ -25,7 +25,7 @@ use crate::{LoftError, LoftParams};
 /// A cell's side in distances of neighbouring points of a contour.
 const CELL_POINTS: f64 = 2.0;
 /// Cells across a contour of usual width, at least and at most.
-const CELLS_ACROSS: [f64; 2] = [16.0, 150.0];
+const CELLS_ACROSS: [f64; 2] = [16.0, 100.0];
 /// Distance of levels in cells, at most.
 const LEVEL_CELLS: f64 = 1.25;
 /// Nodes of a level and of all levels, at most.
@@ -186,7 +186,7 @@ impl<'a> Lofter<'a> {
         let [first, last] = [0, count - 1].map(|k| self.spacing(k));
         let begin = self.layers[0].height - first;
         let mut mesher = Mesher::new(self.grid, begin);
-        self.end_of_stack(&mut mesher, 0, first);
+        self.end_of_stack(&mut mesher, 0, first, false);
         for gap in 0..count - 1 {
             for k in 0..gap.saturating_sub(1) {
                 if let Some(plane) = self.planes[k].take().and_then(Rc::into_inner) {
@@ -195,7 +195,7 @@ impl<'a> Lofter<'a> {
             }
             self.fill(&mut mesher, gap);
         }
-        self.end_of_stack(&mut mesher, count - 1, last);
+        self.end_of_stack(&mut mesher, count - 1, last, true);
         mesher
     }
 
@@ -254,13 +254,11 @@ impl<'a> Lofter<'a> {
     }
 
     /// Closes what begins in the first layer, or ends in the last.
-    fn end_of_stack(&mut self, mesher: &mut Mesher<'_>, layer: usize, spacing: f64) {
-        let up = layer > 0;
+    fn end_of_stack(&mut self, mesher: &mut Mesher<'_>, layer: usize, spacing: f64, up: bool) {
         let of = &self.layers[layer];
         let mut field = Field::default();
         for region in 0..of.regions.len() as u32 {
-            let end = End { layer, of: region, hole: false, up, limit: spacing, seen: false };
-            field.domes.extend(self.dome(end));
+            field.domes.extend(self.dome(self.end(layer, region, false, up)));
         }
         let heights = if up { [of.height, of.height + spacing] } else { [of.height - spacing, of.height] };
         let levels = if of.regions.is_empty() { 1 } else { self.levels(spacing, 0.0) };
@@ -332,18 +330,17 @@ impl<'a> Lofter<'a> {
                 rest.above.sort_unstable();
                 field.blends.push(self.blend(gap, &rest, false));
             }
-            let end = |layer, of, hole, up| End { layer, of, hole, up, limit: rise, seen: true };
             for &of in &links.ended {
-                field.domes.extend(self.dome(end(gap, of, false, true)));
+                field.domes.extend(self.dome(self.end(gap, of, false, true)));
             }
             for &of in &links.begun {
-                field.domes.extend(self.dome(end(gap + 1, of, false, false)));
+                field.domes.extend(self.dome(self.end(gap + 1, of, false, false)));
             }
             for &of in &links.closed {
-                field.pits.extend(self.dome(end(gap, of, true, true)));
+                field.pits.extend(self.dome(self.end(gap, of, true, true)));
             }
             for &of in &links.opened {
-                field.pits.extend(self.dome(end(gap + 1, of, true, false)));
+                field.pits.extend(self.dome(self.end(gap + 1, of, true, false)));
             }
         }
         self.climb(mesher, &field, heights, levels, above.bits.clone(), Some(&upper));
@@ -374,7 +371,13 @@ impl<'a> Lofter<'a> {
             });
         drop(near);
         let planes = numbers.map(|k| k.map(|k| if known { self.plane(k) } else { self.complete(k) }));
-        Blend::new(planes, self.heights(gap), None, self.bounds(gap))
+        let all = Group {
+            below: (0..self.layers[gap].regions.len() as u32).collect(),
+            above: (0..self.layers[gap + 1].regions.len() as u32).collect(),
+            moved: None,
+        };
+        let slopes = self.slopes(gap, &all);
+        Blend::new(planes, self.heights(gap), None, self.bounds(gap)).with_slopes(slopes)
     }
 
     /// The box of nodes that the surface between two layers may reach.
@@ -429,7 +432,47 @@ impl<'a> Lofter<'a> {
                 planes[k] = Some(self.part(*layer, regions, filled[k]));
             }
         }
-        Blend::new(planes, heights, moving.then_some(centres), self.bounds(gap))
+        let slopes = self.slopes(gap, group);
+        Blend::new(planes, heights, moving.then_some(centres), self.bounds(gap)).with_slopes(slopes)
+    }
+
+    /// Slopes of the distance where all that a group has in a slice ends beyond it: those of its dome.
+    fn slopes(&mut self, gap: usize, group: &Group) -> [Option<f64>; 2] {
+        let end = |layer: usize, regions: &[u32], up: bool| match regions {
+            [of] => Some(self.end(layer, *of, false, up)),
+            _ => None,
+        };
+        let ends = [end(gap, &group.below, false), end(gap + 1, &group.above, true)];
+        ends.map(|end| {
+            let end = end.filter(|e| self.ends(*e))?;
+            let trend = self.trend(end);
+            let Close::Round(profile) = self.close(end, &trend) else { return None };
+            let region = &self.layers[end.layer].regions[end.of as usize];
+            let slope = profile.slope * region.area / region.perimeter / self.grid.cell;
+            (!trend.before.is_empty()).then_some(if end.up { slope } else { -slope })
+        })
+    }
+
+    /// An end at a layer, whether it is one or not.
+    fn end(&self, layer: usize, of: u32, hole: bool, up: bool) -> End {
+        let beyond =
+            if up { Some(layer + 1).filter(|k| *k < self.layers.len()) } else { layer.checked_sub(1) };
+        let seen = beyond.is_some();
+        let limit =
+            beyond.map_or(self.spacing(layer), |k| (self.layers[k].height - self.layers[layer].height).abs());
+        End { layer, of, hole, up, limit, seen }
+    }
+
+    /// Whether it is an end.
+    fn ends(&self, end: End) -> bool {
+        let (above, below) =
+            (self.links.get(end.layer), end.layer.checked_sub(1).and_then(|g| self.links.get(g)));
+        match (end.hole, end.up) {
+            (false, true) => above.is_none_or(|l| l.ended.contains(&end.of)),
+            (false, false) => below.is_none_or(|l| l.begun.contains(&end.of)),
+            (true, true) => above.is_some_and(|l| l.closed.contains(&end.of)),
+            (true, false) => below.is_some_and(|l| l.opened.contains(&end.of)),
+        }
     }
 
     /// Regions that are linked with each other, directly or through others.
@@ -505,29 +548,22 @@ impl<'a> Lofter<'a> {
         let of = if end.hole { &layer.holes[end.of as usize] } else { &layer.regions[end.of as usize] };
         let (area, perimeter) = (of.area, of.perimeter);
         let trend = self.trend(end);
-        let expected = Profile::expected(&trend);
-        let goes_on = !end.seen && (layer.cut_off || expected.height > end.limit);
-        let close = if self.caps == Caps::Shape && !goes_on {
-            Close::Round(expected.within(end.limit))
-        } else if self.ends_both_ways(end) {
-            // A slice alone is half as thick as its neighbours are away on both sides.
-            Close::Flat(end.limit / 2.0)
-        } else {
-            Close::Flat(0.0)
-        };
+        let close = self.close(end, &trend);
         let trend = Trend { area, ..trend };
         Dome::over((&plane, &runs), (self.grid, layer, end.up), (&trend, perimeter), close)
     }
 
-    /// Whether a piece ends on the other side of its slice too.
-    fn ends_both_ways(&self, end: End) -> bool {
-        let (above, below) =
-            (self.links.get(end.layer), end.layer.checked_sub(1).and_then(|g| self.links.get(g)));
-        match (end.hole, end.up) {
-            (false, true) => below.is_none_or(|l| l.begun.contains(&end.of)),
-            (false, false) => above.is_none_or(|l| l.ended.contains(&end.of)),
-            (true, true) => below.is_some_and(|l| l.opened.contains(&end.of)),
-            (true, false) => above.is_some_and(|l| l.closed.contains(&end.of)),
+    /// How an end closes, by what the slices before it say.
+    fn close(&self, end: End, trend: &Trend) -> Close {
+        let expected = Profile::expected(trend);
+        let goes_on = !end.seen && (self.layers[end.layer].cut_off || expected.height > end.limit);
+        if self.caps == Caps::Shape && !goes_on {
+            Close::Round(expected.within(end.limit))
+        } else if self.ends(End { up: !end.up, ..end }) {
+            // A slice alone is half as thick as its neighbours are away on both sides.
+            Close::Flat(end.limit / 2.0)
+        } else {
+            Close::Flat(0.0)
         }
     }
 

@@ -1,7 +1,7 @@
 //! The field between two slices: below 0 in the bone, above outside; its zero is the surface.
 //!
 //! It is put together from parts. A [`Blend`] interpolates the signed distances of linked regions along the normal, by a cubic through the
-//! two slices whose slopes in them come from the slices before and behind. The cubic is held by its Bezier controls: where a node is inside in
+//! two slices whose slopes in them come from the slices before and behind, or from the dome that closes a piece there. The cubic is held by its Bezier controls: where a node is inside in
 //! both slices it stays inside, where it is outside in both it stays outside, and where it changes it does so once. A thin piece that moves
 //! by more than it is wide is interpolated in coordinates that move with its centroid. A [`Dome`] closes what ends. Bone is where any part
 //! is, but for the domes of holes that end.
@@ -26,6 +26,8 @@ pub(crate) struct Blend {
     centres: Option<[[f64; 2]; 4]>,
     /// Controls of the cubic, as sums of the four values.
     controls: [[f32; 4]; 2],
+    /// What is added to the controls.
+    added: [f32; 2],
     /// The box of nodes beyond which it is far outside.
     bounds: [[usize; 2]; 2],
 }
@@ -69,7 +71,19 @@ impl Blend {
             std::array::from_fn(|k| (f64::from(u8::from(k == end)) + sign * rise / 3.0 * slope[k]) as f32)
         };
         let controls = [control(low, 1, 1.0), control(high, 2, -1.0)];
-        Self { planes, heights: [heights[1], heights[2]], centres, controls, bounds }
+        Self { planes, heights: [heights[1], heights[2]], centres, controls, added: [0.0; 2], bounds }
+    }
+
+    /// With slopes known of the lower and the upper slice, cells for each mm upwards, as where the piece ends beyond them.
+    pub fn with_slopes(mut self, slopes: [Option<f64>; 2]) -> Self {
+        let rise = self.heights[1] - self.heights[0];
+        for (end, sign) in [(0, 1.0), (1, -1.0)] {
+            if let (Some(slope), None) = (slopes[end], self.centres) {
+                self.controls[end] = std::array::from_fn(|k| f32::from(u8::from(k == end + 1)));
+                self.added[end] = (sign * slope * rise / 3.0) as f32;
+            }
+        }
+        self
     }
 
     /// Bernstein's weights at a height.
@@ -82,7 +96,8 @@ impl Blend {
     #[inline(always)]
     fn cubic(&self, f: [f32; 4], w: [f32; 4]) -> f32 {
         let dot = |c: &[f32; 4]| c[0] * f[0] + c[1] * f[1] + c[2] * f[2] + c[3] * f[3];
-        let (mut p, mut q) = (dot(&self.controls[0]), dot(&self.controls[1]));
+        let mut p = dot(&self.controls[0]) + self.added[0];
+        let mut q = dot(&self.controls[1]) + self.added[1];
         let (low, high) = (f[1].min(f[2]), f[1].max(f[2]));
         if high < 0.0 {
             let most = KEPT * high;

@@ -156,7 +156,7 @@ fn diagonals_close_a_tube_and_say_what_they_leave_out() {
     let params = LoftParams { method: Method::Diagonal, ..LoftParams::default() };
     let tube = at_heights(even(0.0, 2.0, 20), |z| {
         let ring = ellipse([50.0 + 0.2 * z, 50.0], [12.0 + z / 10.0, 9.0], 60 + (z as usize % 7));
-        if z as usize % 4 == 0 { vec![hole(ring)] } else { vec![ring] }
+        if (z as usize).is_multiple_of(4) { vec![hole(ring)] } else { vec![ring] }
     });
     let surface = loft(&tube, &params).unwrap();
     assert_good("tube", &surface);

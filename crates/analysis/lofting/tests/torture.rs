@@ -6,7 +6,7 @@ mod made;
 
 use biplane_artifact::{Artifact, BoneSurface, SliceContours, SliceFlag};
 use biplane_geometry::Point3;
-use biplane_lofting::{Caps, LoftError, LoftParams, loft};
+use biplane_lofting::{Caps, LoftError, LoftParams, loft, surface_of};
 use biplane_phantom::Body;
 use made::{Ring, assert_good, at_heights, cut, disc, ellipse, even, hole, least_angles, slice, stack};
 use rand::{Rng, SeedableRng};
@@ -30,7 +30,8 @@ fn lofted(what: &str, contours: &SliceContours) -> BoneSurface {
     assert!(surface.mesh.vertices().iter().all(|v| v.iter().all(|c| c.is_finite())));
     let flat = loft(contours, &LoftParams { caps: Caps::Flat, ..params.clone() }).unwrap();
     assert_good(what, &flat);
-    assert_eq!(surface.encode(), loft(contours, &params).unwrap().encode(), "{what}");
+    let [once, again] = [(); 2].map(|()| surface_of(contours, &params).unwrap().encode());
+    assert_eq!(once, again, "{what}");
     surface
 }
 
@@ -138,6 +139,12 @@ fn beginning_ending_and_missing() {
     let bridged = lofted("lost between", &missing);
     pieces(&bridged, 1);
     assert_eq!(bridged.report.warnings.len(), 3, "{:?}", bridged.report.warnings);
+    let mut others_lost =
+        at_heights(even(0.0, 2.0, 3), |z| if z == 2.0 { vec![disc([50.0, 50.0], 9.0)] } else { vec![] });
+    for k in [0, 2] {
+        others_lost.slices[k].flags.push(SliceFlag::Lost);
+    }
+    pieces(&lofted("all others lost", &others_lost), 1);
     let alone =
         at_heights(even(0.0, 2.0, 5), |z| if z == 4.0 { vec![disc([50.0, 50.0], 9.0)] } else { vec![] });
     let surface = lofted("one slice of five", &alone);
@@ -297,7 +304,7 @@ fn bodies_of_the_phantom() {
         let (low, high) = solid.bounds();
         for step in [1.0, 2.0, 4.0] {
             let count = ((high.z - low.z + 6.0) / step) as usize;
-            let contours = at_heights(even(low.z - 3.0, step, count), |z| cut(solid, z, 0.8));
+            let contours = at_heights(even(low.z - 3.0, step, count), |z| cut(solid, z, 1.2));
             lofted(&format!("{} at {step} mm", body.name()), &contours);
         }
     }
