@@ -17,7 +17,8 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline", "biplane-surface"],
+    &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
+    &["biplane-surface"],
     &["biplane-edge-field", "biplane-outline"],
     &[
         "biplane-acquisition",

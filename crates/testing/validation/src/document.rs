@@ -48,11 +48,13 @@ impl Section {
 }
 
 /// The rows that the README shows: table, row.
-const HEADLINES: [(&str, &str); 11] = [
+const HEADLINES: [(&str, &str); 13] = [
     ("gvirtualxray", "knee implant, femoral component"),
     ("gvirtualxray", "knee implant, tray"),
     ("gvirtualxray", "natural knee, femur"),
     ("gvirtualxray", "natural knee, tibia"),
+    ("gvirtualxray", "natural knee, femur from MRI"),
+    ("gvirtualxray", "natural knee, tibia from MRI"),
     ("end-to-end", "femoral component"),
     ("end-to-end", "tibial tray"),
     ("end-to-end", "distal femur"),
