@@ -118,8 +118,8 @@ fn opening(shape: &Shape, z: &Vector3) -> Option<Vector3> {
         .filter(|p| (p.0 - a).hypot(p.1 - b) > 0.5 * radius)
         .map(|p| ((p.1 - b).atan2(p.0 - a), p.2))
         .collect();
-    for k in 0..180 {
-        let angle = 2.0 * PI * f64::from(k) / 180.0;
+    for k in 0..72 {
+        let angle = 2.0 * PI * f64::from(k) / 72.0;
         let area: f64 = outer
             .iter()
             .map(|(at, area)| {

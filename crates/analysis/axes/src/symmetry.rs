@@ -15,7 +15,7 @@ pub(crate) const ASYMMETRIC: f64 = 0.018;
 /// Places that are mirrored.
 const MIRRORED: usize = 1_500;
 /// Places that they are held against.
-const HELD: usize = 12_000;
+const HELD: usize = 8_000;
 
 /// A mirror plane: `normal . p = height`.
 #[derive(Debug, Clone)]
@@ -132,7 +132,7 @@ impl Places {
             })
             .collect();
         first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        first.truncate(12);
+        first.truncate(8);
         let mut rough: Vec<Mirror> = first.into_iter().map(|m| self.refined(m, square, 5, 20)).collect();
         rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         // Most starts lead to one plane: it is made better once.
