@@ -324,7 +324,7 @@ fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             text.push(',');
         }
         text.push(digit);
@@ -463,7 +463,7 @@ fn shown_slices(contours: &SliceContours, said: &BTreeMap<usize, Said>) -> Vec<u
         (0..contours.slices.len()).filter(|k| !contours.slices[*k].contours.is_empty()).collect();
     let every = with.len().div_ceil(MOST_SLICES).max(1);
     let alarming = |k: &usize| said.get(k).is_some_and(|s| s.alarming);
-    let chosen = |n: usize, k: &usize| n % every == 0 || n + 1 == with.len() || alarming(k);
+    let chosen = |n: usize, k: &usize| n.is_multiple_of(every) || n + 1 == with.len() || alarming(k);
     with.iter().enumerate().filter(|(n, k)| chosen(*n, k)).map(|(_, k)| *k).collect()
 }
 

@@ -162,7 +162,7 @@ fn surface(
 fn model(body: &Body, from: From, item: &Item, walk: &mut Walk<'_>) -> Result<Option<BodyModel>, ItemError> {
     let wanted = match (&body.model, &from) {
         (None, From::File(file)) => return Ok(Some(BodyModel::File(Arc::clone(file)))),
-        (wanted, _) => wanted.clone().unwrap_or_default(),
+        (wanted, _) => wanted.unwrap_or_default(),
     };
     let params = ParamsText::of(&wanted).map_err(ItemError::of)?;
     let promised = match &from {

@@ -202,8 +202,9 @@ fn overlap(volume: &Volume, label: f32, mesh: &Mesh, slices: impl Iterator<Item 
                 .collect();
             let &[p, q] = &ends[..] else { continue };
             let (low, high) = (p[1].min(q[1]), p[1].max(q[1]));
-            for j in low.ceil().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(volume.rows) {
-                crossings[j].push(p[0] + (j as f64 - p[1]) / (q[1] - p[1]) * (q[0] - p[0]));
+            let [from, to] = [low, high].map(|v| (v.ceil().max(0.0) as usize).min(volume.rows));
+            for (j, row) in crossings[from..to].iter_mut().enumerate() {
+                row.push(p[0] + ((from + j) as f64 - p[1]) / (q[1] - p[1]) * (q[0] - p[0]));
             }
         }
         for (j, row) in crossings.iter_mut().enumerate() {
