@@ -73,7 +73,7 @@ impl Default for LabelSurfaceParams {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LabelSurfaceError {
     /// A parameter out of range.
-    #[error("[surface] {name} = {value}, expected {expected}")]
+    #[error("[label_surface] {name} = {value}, expected {expected}")]
     Parameter {
         /// The key in pipeline.toml.
         name: &'static str,

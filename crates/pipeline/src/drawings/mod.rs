@@ -11,6 +11,7 @@ mod base64;
 mod bead;
 mod camera;
 mod colours;
+mod contour_panel;
 mod distance_map;
 mod figures;
 mod labels;

@@ -1,10 +1,10 @@
 //! The sheet of a model: the mesh from four sides, with the slices it came from, with its axes and what they were made from, how far it
 //! is from a reference, and its numbers.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use biplane_artifact::{
-    BodyAxes, BodyKind, BoneSurface, Drawing, ModelMesh, Side, SliceContours, SliceFlag, SurfaceReport,
+    BodyAxes, BodyKind, BoneSurface, Drawing, ModelMesh, Side, SliceContours, SurfaceReport,
 };
 use biplane_geometry::{Mesh, Point3, Vector3};
 use biplane_stage::{Context, Stage, inputs};
@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 use super::DrawingError;
 use super::camera::{Camera, Directions, Viewpoint};
 use super::colours::{FAINT, INK, Level, RULE};
+use super::contour_panel::slices_panel;
 use super::distance_map::{DistanceMap, draw_bar};
 use super::figures::{draw_axes, draw_figures, reaches, source, tips, write_names};
-use super::labels::Labels;
-use super::shaded::{Paint, Picture, Shape, shaded};
+use super::shaded::{COARSE, FINE, Paint, Picture, Shape, shaded};
 use super::sheet::{Fact, MARGIN, SMALL, TEXT, WIDTH, facts, quantity, shortened, wrapped};
 use super::svg::{Anchor, Font, Style, Svg, text_width};
 
@@ -26,19 +26,15 @@ const GAP: f64 = 12.0;
 /// Height of the four views.
 const VIEW: f64 = 224.0;
 /// Width and height of a panel.
-const PANEL: [f64; 2] = [(WIDTH - 2.0 * MARGIN - GAP) / 2.0, 430.0];
+pub(super) const PANEL: [f64; 2] = [(WIDTH - 2.0 * MARGIN - GAP) / 2.0, 430.0];
 /// Room for a title above a picture.
 const TITLE: f64 = 24.0;
 /// Room around a body in its picture.
 const ROOM: f64 = 14.0;
-/// Contours' slices that are drawn.
-const MOST_SLICES: usize = 60;
-/// Slices that are named, and lines of faults and warnings that are shown.
+/// Faults and warnings that are shown.
 const MOST_NAMED: usize = 10;
 /// Length of the axes, in half diagonals of the body.
 const AXES: f64 = 0.62;
-/// Colours of slices of which nothing is said, that meet the volume's border, that are alarming.
-const SLICES: [&str; 3] = ["#0b6fae", "#b35900", "#d3202c"];
 
 inputs! {
     /// A body's model and, where there are such, its axes, the contours and the surface it was made from, and a mesh to compare it
@@ -164,12 +160,12 @@ impl Places {
 }
 
 /// A body and what is known of it.
-struct Body<'a> {
+pub(super) struct Body<'a> {
     model: &'a Mesh,
-    shown: &'a ModelDrawing<'a>,
-    shape: Shape<'a>,
+    pub(super) shown: &'a ModelDrawing<'a>,
+    pub(super) shape: Shape<'a>,
     check: MeshCheck,
-    directions: Directions,
+    pub(super) directions: Directions,
     /// Length of the drawn axes, mm.
     axis_mm: f64,
 }
@@ -189,7 +185,7 @@ impl<'a> Body<'a> {
     }
 
     /// A camera that shows all of the body, and its axes where there are some.
-    fn camera(&self, from: Viewpoint, size: [f64; 2], in_perspective: bool) -> Camera {
+    pub(super) fn camera(&self, from: Viewpoint, size: [f64; 2], in_perspective: bool) -> Camera {
         let marks: Vec<Point3> = self
             .shown
             .axes
@@ -373,7 +369,7 @@ fn heading(svg: &mut Svg, body: &Body) -> f64 {
 }
 
 /// A title and a frame; returns the corner of what is inside.
-fn framed(svg: &mut Svg, corner: [f64; 2], size: [f64; 2], title: &str) -> [f64; 2] {
+pub(super) fn framed(svg: &mut Svg, corner: [f64; 2], size: [f64; 2], title: &str) -> [f64; 2] {
     svg.text([corner[0], corner[1] + 16.0], Font::new(TEXT, INK).bold(), title);
     let corner = [corner[0], corner[1] + TITLE];
     svg.group(Style::line("field", RULE, 1.0), |svg| svg.rectangle(corner, size));
@@ -381,7 +377,7 @@ fn framed(svg: &mut Svg, corner: [f64; 2], size: [f64; 2], title: &str) -> [f64;
 }
 
 /// A shaded picture in a frame, and marks on it in its own units.
-fn pictured(
+pub(super) fn pictured(
     svg: &mut Svg,
     corner: [f64; 2],
     size: [f64; 2],
@@ -405,7 +401,7 @@ fn views(svg: &mut Svg, body: &Body, top: f64) -> Result<f64, DrawingError> {
         let corner = [MARGIN + place as f64 * (size[0] + GAP), top];
         let corner = framed(svg, corner, size, title);
         let camera = body.camera(from, size, in_perspective);
-        let picture = shaded(&body.shape, &camera, Paint::Plain { faded: 0.0 })?;
+        let picture = shaded(&body.shape, &camera, Paint::Plain { faded: 0.0 }, COARSE)?;
         pictured(svg, corner, size, &picture, |svg| {
             if let Some(axes) = body.shown.axes {
                 draw_figures(svg, axes, &picture, &camera, true);
@@ -420,7 +416,7 @@ fn views(svg: &mut Svg, body: &Body, top: f64) -> Result<f64, DrawingError> {
 }
 
 /// A bar of a round length in the lower left corner.
-fn scale_bar(svg: &mut Svg, camera: &Camera) {
+pub(super) fn scale_bar(svg: &mut Svg, camera: &Camera) {
     let mm = super::arrows::round_below(0.3 * camera.size()[0] / camera.scale());
     let [left, y] = [8.0, camera.size()[1] - 8.0];
     let right = left + mm * camera.scale();
@@ -429,162 +425,12 @@ fn scale_bar(svg: &mut Svg, camera: &Camera) {
     svg.text([left, y - 5.0], Font::new(SMALL - 1.0, INK), &quantity(mm, decimals, "mm"));
 }
 
-/// What is said of a slice.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct Said {
-    words: Vec<String>,
-    /// Whether it is something to look at, and not only that the bone goes on beyond the volume.
-    alarming: bool,
-}
-
-/// The flags of the slices, and the faults of the surface beside them.
-fn said(contours: &SliceContours, surface: Option<&SurfaceReport>) -> BTreeMap<usize, Said> {
-    let mut said: BTreeMap<usize, Said> = BTreeMap::new();
-    for (k, slice) in contours.slices.iter().enumerate() {
-        for flag in &slice.flags {
-            let of_slice = said.entry(k).or_default();
-            of_slice.words.push(crate::slices::words(*flag).to_owned());
-            of_slice.alarming |= !matches!(flag, SliceFlag::TouchesBorder | SliceFlag::CutOff);
-        }
-    }
-    for fault in surface.iter().flat_map(|s| &s.faults) {
-        if let Some(slice) = fault.slice {
-            let of_slice = said.entry(slice).or_default();
-            of_slice.words.push(fault.what.clone());
-            of_slice.alarming = true;
-        }
-    }
-    said
-}
-
-/// Which slices are shown: evenly chosen ones, and all that are alarming.
-fn shown_slices(contours: &SliceContours, said: &BTreeMap<usize, Said>) -> Vec<usize> {
-    let with: Vec<usize> =
-        (0..contours.slices.len()).filter(|k| !contours.slices[*k].contours.is_empty()).collect();
-    let every = with.len().div_ceil(MOST_SLICES).max(1);
-    let alarming = |k: &usize| said.get(k).is_some_and(|s| s.alarming);
-    let chosen = |n: usize, k: &usize| n.is_multiple_of(every) || n + 1 == with.len() || alarming(k);
-    with.iter().enumerate().filter(|(n, k)| chosen(*n, k)).map(|(_, k)| *k).collect()
-}
-
-/// The points of a contour that are apart in the picture.
-fn thinned(points: Vec<[f64; 3]>, camera: &Camera) -> Vec<Point3> {
-    let mut kept: Vec<Point3> = Vec::new();
-    let mut last = [f64::INFINITY; 2];
-    for p in points.into_iter().map(Point3::from) {
-        let at = camera.onto(&p);
-        if (at[0] - last[0]).hypot(at[1] - last[1]) > 3.0 {
-            kept.push(p);
-            last = at;
-        }
-    }
-    kept
-}
-
-/// The mesh with the contours it was made from.
-fn slices_panel(
-    svg: &mut Svg,
-    body: &Body,
-    contours: &SliceContours,
-    corner: [f64; 2],
-) -> Result<(), DrawingError> {
-    let said = said(contours, body.shown.surface);
-    let slices = shown_slices(contours, &said);
-    let title = format!("with the contours of its slices, {}", body.directions.name(Viewpoint::Corner));
-    let inside = framed(svg, corner, PANEL, &title);
-    let camera = body.camera(Viewpoint::Corner, PANEL, false);
-    let picture = shaded(&body.shape, &camera, Paint::Plain { faded: 0.25 })?;
-    // Lines that are seen and that are hidden, of slices of which nothing is said, that meet the border, that are alarming.
-    let mut lines: [[Vec<Vec<[f64; 2]>>; 2]; 3] = Default::default();
-    let mut places: Vec<(usize, [f64; 2])> = Vec::new();
-    for &k in &slices {
-        let parts = &mut lines[kind(said.get(&k))];
-        let mut leftmost: Option<[f64; 2]> = None;
-        for c in 0..contours.slices[k].contours.len() {
-            let line = thinned(contours.points_mm(k, c), &camera);
-            for at in line.iter().map(|p| camera.onto(p)) {
-                if leftmost.is_none_or(|l| at[0] < l[0]) {
-                    leftmost = Some(at);
-                }
-            }
-            let [seen, hidden] = picture.parted(&line, true);
-            parts[0].extend(seen);
-            parts[1].extend(hidden);
-        }
-        places.extend(leftmost.map(|at| (k, at)));
-    }
-    pictured(svg, inside, PANEL, &picture, |svg| {
-        for (parts, colour) in lines.iter().zip(SLICES) {
-            let faint = Style { opacity: 0.22, ..Style::line("contour-hidden", colour, 0.7) };
-            if !parts[1].is_empty() {
-                svg.group(faint, |svg| svg.strokes(&parts[1], false));
-            }
-        }
-        for ((parts, colour), class) in
-            lines.iter().zip(SLICES).zip(["contour", "contour-border", "contour-flagged"])
-        {
-            let width = if class == "contour-flagged" { 1.9 } else { 1.0 };
-            if !parts[0].is_empty() {
-                svg.group(Style::line(class, colour, width), |svg| svg.strokes(&parts[0], false));
-            }
-        }
-        slice_names(svg, &places, &said);
-        scale_bar(svg, &camera);
-    });
-    let note = match (slices.len(), contours.slices.iter().filter(|s| !s.contours.is_empty()).count()) {
-        (0, _) => "there are no contours".to_owned(),
-        (some, all) if some < all => format!("{some} of {all} slices"),
-        (_, all) => format!("all {all} slices"),
-    };
-    let y = inside[1] + PANEL[1] + 19.0;
-    let mut x = inside[0];
-    for (colour, word) in SLICES.into_iter().zip([note.as_str(), "cut off by the volume", "look at it"]) {
-        svg.group(Style::area("swatch", colour), |svg| svg.rectangle([x, y - 7.0], [22.0, 4.0]));
-        svg.text([x + 28.0, y], Font::new(SMALL, INK), word);
-        x += 28.0 + 0.9 * text_width(word, SMALL) + 22.0;
-    }
-    Ok(())
-}
-
-fn kind(said: Option<&Said>) -> usize {
-    said.map_or(0, |s| if s.alarming { 2 } else { 1 })
-}
-
-/// The numbers of the first and last slice, and of runs of slices of which something is said, with what.
-fn slice_names(svg: &mut Svg, places: &[(usize, [f64; 2])], said: &BTreeMap<usize, Said>) {
-    let mut labels = Labels::new([0.0, 0.0], PANEL, std::iter::empty());
-    // First and last slice of each run, what is said, and where it is written.
-    let mut runs: Vec<(usize, usize, Option<&Said>, [f64; 2])> = Vec::new();
-    for (n, (k, at)) in places.iter().enumerate() {
-        let what = said.get(k);
-        match runs.last_mut() {
-            Some(run) if what.is_some() && run.2 == what => run.1 = *k,
-            _ if what.is_some() || n == 0 || n + 1 == places.len() => runs.push((*k, *k, what, *at)),
-            // A slice of which nothing is said ends a run.
-            _ => runs.push((*k, *k, None, [f64::NAN; 2])),
-        }
-    }
-    runs.retain(|run| !run.3[0].is_nan());
-    // What is alarming first, so that it has the best places.
-    runs.sort_by_key(|run| std::cmp::Reverse(kind(run.2)));
-    for (first, last, what, at) in runs.into_iter().take(MOST_NAMED + 2) {
-        let number =
-            if first == last { format!("slice {first}") } else { format!("slices {first} to {last}") };
-        let text = match what {
-            Some(said) => shortened(&format!("{number}: {}", said.words.join(", ")), 44),
-            None => number,
-        };
-        let place = labels.place(at, 3.0, &text, SMALL);
-        svg.text(place, Font::new(SMALL, SLICES[kind(what)]).bold(), &text);
-    }
-}
-
 /// The mesh with its axes and what they were made from.
 fn axes_panel(svg: &mut Svg, body: &Body, axes: &BodyAxes, corner: [f64; 2]) -> Result<(), DrawingError> {
     let title = format!("with its axes, {}", body.directions.name(Viewpoint::Corner));
     let inside = framed(svg, corner, PANEL, &title);
     let camera = body.camera(Viewpoint::Corner, PANEL, false);
-    let picture = shaded(&body.shape, &camera, Paint::Plain { faded: 0.55 })?;
+    let picture = shaded(&body.shape, &camera, Paint::Plain { faded: 0.55 }, FINE)?;
     pictured(svg, inside, PANEL, &picture, |svg| {
         draw_figures(svg, axes, &picture, &camera, false);
         draw_axes(svg, axes, body.axis_mm, &picture, &camera, false);
@@ -618,7 +464,7 @@ fn distance_panel(svg: &mut Svg, body: &Body, reference: &Mesh, top: f64) -> Res
         let camera = Camera::fitted(body.directions.frame(from), used, size, ROOM, false);
         let colour = |value: f32| map.colour(value);
         let paint = Paint::Values { values: &map.values, colour: &colour };
-        let picture = shaded(&body.shape, &camera, paint)?;
+        let picture = shaded(&body.shape, &camera, paint, COARSE)?;
         pictured(svg, corner, size, &picture, |svg| scale_bar(svg, &camera));
     }
     let end = draw_bar(svg, &map, [WIDTH - MARGIN - 154.0, top + TITLE + 8.0], 190.0);

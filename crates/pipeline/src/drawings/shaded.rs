@@ -11,8 +11,10 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::camera::Camera;
 use super::{DrawingError, base64};
 
-/// Dots of a picture for each unit of the drawing, before averaging.
-const DOTS: f64 = 2.5;
+/// How finely a picture is drawn: dots for each unit of the drawing, before averaging.
+pub(super) const FINE: f64 = 2.5;
+/// See [`FINE`]: for small pictures and for such as have so many colours that their file is large.
+pub(super) const COARSE: f64 = 2.0;
 /// Dots that are averaged, along either side.
 const AVERAGED: usize = 2;
 /// Cosine of the sharpest edge that is shown round.
@@ -117,6 +119,8 @@ pub(super) struct Picture {
     /// As PNG, in base64.
     pub base64: String,
     camera: Camera,
+    /// Dots for each unit of the drawing.
+    fineness: f64,
     /// Columns and rows of dots, and the depth of each; negative infinity where nothing is.
     size: [usize; 2],
     depths: Vec<f32>,
@@ -126,8 +130,13 @@ pub(super) struct Picture {
 ///
 /// # Errors
 /// The picture cannot be written as PNG.
-pub(super) fn shaded(shape: &Shape, camera: &Camera, paint: Paint) -> Result<Picture, DrawingError> {
-    let dots = camera.enlarged(DOTS);
+pub(super) fn shaded(
+    shape: &Shape,
+    camera: &Camera,
+    paint: Paint,
+    fineness: f64,
+) -> Result<Picture, DrawingError> {
+    let dots = camera.enlarged(fineness);
     let even = |v: f64| (v.clamp(2.0, 8000.0) as usize).next_multiple_of(AVERAGED);
     let size = [0, 1].map(|a| even(dots.size()[a]));
     let mut buffer = Buffer {
@@ -156,7 +165,7 @@ pub(super) fn shaded(shape: &Shape, camera: &Camera, paint: Paint) -> Result<Pic
         };
         buffer.triangle(at, normals, values, paint);
     }
-    let step = (OUTLINE / dots.scale() * DOTS) as f32;
+    let step = (OUTLINE / camera.scale()) as f32;
     let nearness = |d: f32| dots.nearness_of(f64::from(d)) as f32;
     let bytes = buffer.averaged(step, nearness);
     let mut png = Vec::new();
@@ -166,7 +175,7 @@ pub(super) fn shaded(shape: &Shape, camera: &Camera, paint: Paint) -> Result<Pic
         (size[1] / AVERAGED) as u32,
         ExtendedColorType::Rgb8,
     )?;
-    Ok(Picture { base64: base64::encode(&png), camera: *camera, size, depths: buffer.depths })
+    Ok(Picture { base64: base64::encode(&png), camera: *camera, fineness, size, depths: buffer.depths })
 }
 
 struct Buffer {
@@ -277,7 +286,7 @@ impl Picture {
     /// Whether a point on or before the surface is seen.
     fn sees(&self, p: &Point3) -> bool {
         let at = self.camera.onto(p);
-        let [x, y] = at.map(|v| (v * DOTS).clamp(0.0, 1e6) as usize);
+        let [x, y] = at.map(|v| (v * self.fineness).clamp(0.0, 1e6) as usize);
         let here = self.camera.nearness(p) + BELOW_MM + BELOW / self.camera.scale();
         // The farthest of the dots about it: on a surface seen from its edge one dot is far from the next.
         let mut depth = f32::INFINITY;
