@@ -8,7 +8,7 @@
 use std::rc::Rc;
 
 use biplane_artifact::SurfaceReport;
-use biplane_geometry::{Mesh, Vector3};
+use biplane_geometry::{Mesh, Point3, Vector3};
 
 use crate::dome::{Close, Dome, Profile, Trend};
 use crate::finish;
@@ -29,8 +29,8 @@ const CELLS_ACROSS: [f64; 2] = [16.0, 100.0];
 /// Distance of levels in cells, at most.
 const LEVEL_CELLS: f64 = 1.25;
 /// Nodes of a level and of all levels, at most.
-const MOST_NODES: f64 = 1e6;
-const MOST_NODES_IN_ALL: f64 = 4e8;
+const MOST_NODES: f64 = 4e5;
+const MOST_NODES_IN_ALL: f64 = 1e8;
 /// Levels between two slices, at most.
 const MOST_LEVELS: f64 = 64.0;
 /// Nodes by which the surface between two slices may reach beyond both.
@@ -70,10 +70,10 @@ pub(crate) fn surface(stack: &Stack, params: &LoftParams) -> Result<Made, LoftEr
         lofted = Lofted::of(&grid, &again, params);
     }
     let Lofted { mut vertices, triangles, rims } = lofted;
-    let unmoved = vertices.iter().map(|v| stack.scanner((*v).into())).collect();
+    let unmoved: Vec<Point3> = vertices.iter().map(|v| stack.scanner((*v).into())).collect();
     finish::even(&mut vertices, &triangles, &rims);
     if let Some(volume) = unsmoothed_volume_mm3 {
-        finish::keep_volume(&mut vertices, &triangles, &rims, volume);
+        finish::keep_volume(&mut vertices, &triangles, &rims, volume, grid.cell);
     }
     let report = SurfaceReport {
         method: "distance".to_owned(),
@@ -81,9 +81,14 @@ pub(crate) fn surface(stack: &Stack, params: &LoftParams) -> Result<Made, LoftEr
         warnings,
         ..SurfaceReport::default()
     };
-    let vertices = vertices.into_iter().map(|v| stack.scanner(v.into())).collect();
-    // A closed surface made of cells always has triangles with an area.
-    let mesh = Mesh::new(vertices, triangles).map_err(|_| LoftError::Small { cell_mm: grid.cell })?;
+    let moved = vertices.into_iter().map(|v| stack.scanner(v.into())).collect();
+    let small = |_| LoftError::Small { cell_mm: grid.cell };
+    let count = triangles.len();
+    // A triangle that moving left without an area would be missing: then nothing is moved. As made in its cell each has one.
+    let mesh = match Mesh::new(moved, triangles.clone()) {
+        Ok(mesh) if mesh.triangles().len() == count => mesh,
+        _ => Mesh::new(unmoved.clone(), triangles).map_err(small)?,
+    };
     Ok(Made { mesh, unmoved: Some(unmoved), unsmoothed_volume_mm3, report })
 }
 

@@ -75,14 +75,22 @@ pub(crate) fn even(vertices: &mut [Vector3], triangles: &[[u32; 3]], rims: &[boo
     }
 }
 
-/// Moves all vertices along their normals by one length, so that the volume becomes what is wanted; rims of lids stay.
-pub(crate) fn keep_volume(vertices: &mut [Vector3], triangles: &[[u32; 3]], rims: &[bool], wanted: f64) {
+/// Moves all vertices along their normals by one length, so that the volume becomes what is wanted; rims of lids stay. The length is at most a
+/// quarter of a `cell`.
+pub(crate) fn keep_volume(
+    vertices: &mut [Vector3],
+    triangles: &[[u32; 3]],
+    rims: &[bool],
+    wanted: f64,
+    cell: f64,
+) {
     let mut all = Vec::new();
     // Twice: the area changes a little on the way.
     for _ in 0..2 {
         around(vertices, triangles, rims, &mut all);
         let area: f64 = all.iter().map(|of| of.area).sum::<f64>() / 6.0;
         let off = (wanted - volume(vertices, triangles)) / area.max(f64::MIN_POSITIVE);
+        let off = off.clamp(-cell / 4.0, cell / 4.0);
         for ((v, of), rim) in vertices.iter_mut().zip(&all).zip(rims) {
             if !rim {
                 *v += of.normal.try_normalize(0.0).unwrap_or_default() * off;

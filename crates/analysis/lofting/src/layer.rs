@@ -321,7 +321,7 @@ fn passes(contours: &[Contour], grid: &Grid) -> Vec<Pass> {
             let q = grid.in_cells(*q);
             // Rows y with p <= y < q or q <= y < p.
             let (low, high, turn) = if p[1] < q[1] { (p[1], q[1], 1) } else { (q[1], p[1], -1) };
-            let (mut y, end) = (low.ceil(), high.ceil());
+            let (mut y, end) = (low.ceil().max(1.0), high.ceil().min((grid.size[1] - 1) as f64));
             if y < end {
                 let slope = (q[0] - p[0]) / (q[1] - p[1]);
                 while y < end {

@@ -18,6 +18,8 @@ use crate::layer::{Grid, Layer};
 use crate::plane::Plane;
 use crate::stack::{Contour, Slice};
 
+/// No point moves by more cells than this, whatever `size` is: the grid goes no farther.
+const MOST_CELLS: f64 = 2.0;
 /// Slices on either side.
 const SIDE: usize = 2;
 
@@ -54,7 +56,8 @@ pub(crate) fn smoothed(slices: &[&Slice], layers: &[Layer], grid: &Grid, size: f
                     let distance =
                         |(plane, w): (&&Plane, &f64)| f64::from(plane.between(grid, at[0], at[1])) * w;
                     let off = grid.cell * near.iter().zip(&weights).map(distance).sum::<f64>();
-                    let off = off / (1.0 + (off / size).powi(2));
+                    let off = (off / (1.0 + (off / size).powi(2)))
+                        .clamp(-MOST_CELLS * grid.cell, MOST_CELLS * grid.cell);
                     let mut normal = across(&contour.points, n);
                     let beside = |s: f64| {
                         let [x, y] = [0, 1].map(|a| at[a] + (s * normal[a]) as f32);

@@ -418,3 +418,52 @@ fn what_is_no_stack_is_named() {
     let top = surface.mesh.vertices().iter().map(|v: &Point3| v.z).fold(0.0, f64::max);
     assert_eq!(top, 10.0, "an end of the volume where the bone goes on is flat");
 }
+
+/// Contours that no bone has: points drawn anywhere, slices lost and cut, shifted against each other.
+#[test]
+fn scribbles() {
+    for case in 0..60 {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(case);
+        let size = 10_f64.powf(random.random_range(-0.5..2.5));
+        let mut z = 0.0;
+        let mut slices = Vec::new();
+        for _ in 0..random.random_range(2..7) {
+            z += size * 10_f64.powf(random.random_range(-2.0..0.0));
+            let mut rings = Vec::new();
+            for _ in 0..random.random_range(0..4) {
+                let centre = [(); 2].map(|()| random.random_range(0.0..size));
+                let wide = size * 10_f64.powf(random.random_range(-1.5..0.0));
+                // Some on a coarse lattice, where points and sides coincide.
+                let step = if random.random_range(0..3) == 0 { size / 20.0 } else { size * 1e-9 };
+                let point = |v: f64, random: &mut Xoshiro256PlusPlus| {
+                    ((v + wide * random.random_range(-1.0..1.0)) / step).round() * step
+                };
+                let count = random.random_range(3..30);
+                rings.push((0..count).map(|_| centre.map(|v| point(v, &mut random))).collect::<Ring>());
+            }
+            let mut slice = slice([random.random_range(-0.2..0.2) * size, 0.0, z], rings);
+            for flag in [SliceFlag::Lost, SliceFlag::CutOff] {
+                if random.random_range(0..4) == 0 {
+                    slice.flags.push(flag);
+                }
+            }
+            slices.push(slice);
+        }
+        let contours = stack(slices);
+        let params = LoftParams {
+            cell_mm: (size / 40.0).clamp(0.02, 20.0),
+            smoothing_mm: [0.0, 0.5][case as usize % 2],
+            caps: [Caps::Shape, Caps::Flat][case as usize / 2 % 2],
+            ..LoftParams::default()
+        };
+        match loft(&contours, &params) {
+            Ok(surface) => assert_good(&format!("scribble {case}"), &surface),
+            Err(error) => println!("scribble {case}: {error}"),
+        }
+        // The thesis's way need not succeed, but says what is wrong.
+        let diagonal = LoftParams { method: biplane_lofting::Method::Diagonal, ..params };
+        if let Err(error) = loft(&contours, &diagonal) {
+            println!("scribble {case}, diagonal: {error}");
+        }
+    }
+}
