@@ -17,6 +17,9 @@ mod figures;
 mod labels;
 mod legend;
 mod model;
+mod model_numbers;
+#[cfg(test)]
+mod model_tests;
 mod plate;
 mod residual;
 mod shaded;

@@ -3,12 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use biplane_artifact::{
-    BodyAxes, BodyKind, BoneSurface, Drawing, ModelMesh, Side, SliceContours, SurfaceReport,
-};
+use biplane_artifact::{BodyAxes, BoneSurface, Drawing, ModelMesh, SliceContours, SurfaceReport};
 use biplane_geometry::{Mesh, Point3, Vector3};
 use biplane_stage::{Context, Stage, inputs};
-use biplane_surface::{Edges, MeshCheck};
+use biplane_surface::MeshCheck;
 use serde::{Deserialize, Serialize};
 
 use super::DrawingError;
@@ -17,8 +15,9 @@ use super::colours::{FAINT, INK, Level, RULE};
 use super::contour_panel::slices_panel;
 use super::distance_map::{DistanceMap, draw_bar};
 use super::figures::{draw_axes, draw_figures, reaches, source, tips, write_names};
+use super::model_numbers::{MESH_FACTS, grouped, unsigned_zero};
 use super::shaded::{COARSE, FINE, Paint, Picture, Shape, shaded};
-use super::sheet::{Fact, MARGIN, SMALL, TEXT, WIDTH, facts, quantity, shortened, wrapped};
+use super::sheet::{MARGIN, SMALL, TEXT, WIDTH, facts, quantity, shortened, wrapped};
 use super::svg::{Anchor, Font, Style, Svg, text_width};
 
 /// Room between pictures.
@@ -161,10 +160,10 @@ impl Places {
 
 /// A body and what is known of it.
 pub(super) struct Body<'a> {
-    model: &'a Mesh,
+    pub(super) model: &'a Mesh,
     pub(super) shown: &'a ModelDrawing<'a>,
     pub(super) shape: Shape<'a>,
-    check: MeshCheck,
+    pub(super) check: MeshCheck,
     pub(super) directions: Directions,
     /// Length of the drawn axes, mm.
     axis_mm: f64,
@@ -213,7 +212,7 @@ impl<'a> Body<'a> {
     }
 
     /// Sides of the box along the body's axes, or along the coordinates, mm.
-    fn size_mm(&self) -> [f64; 3] {
+    pub(super) fn size_mm(&self) -> [f64; 3] {
         let axes = self.shown.axes.map(|a| a.axes.map(Vector3::from));
         let axes = axes.unwrap_or([Vector3::x(), Vector3::y(), Vector3::z()]);
         axes.map(|axis| {
@@ -224,108 +223,6 @@ impl<'a> Body<'a> {
             high - low
         })
     }
-}
-
-/// How many of the numbers are of the mesh as it is.
-const MESH_FACTS: usize = 8;
-
-impl Body<'_> {
-    fn numbers(&self) -> Vec<Fact> {
-        let check = &self.check;
-        let plain = |name, text: String| (name, text, Level::Plain);
-        let closed = match (check.open_edges.len(), check.is_manifold()) {
-            (0, true) => ("closed, two-manifold", "yes".to_owned(), Level::Good),
-            (open, true) => ("closed, two-manifold", format!("open along {open} edges"), Level::Near),
-            (open, false) => {
-                let crowded = check.crowded_edges.len() + check.inconsistent_edges.len();
-                let pinched = check.pinched_vertices.len();
-                let text = format!("no: {open} open, {crowded} bad edges, {pinched} bad points");
-                ("closed, two-manifold", text, Level::Bad)
-            }
-        };
-        let mut lengths: Vec<f64> = Edges::of(self.model)
-            .iter()
-            .map(|([a, b], _)| (self.model.vertices()[a as usize] - self.model.vertices()[b as usize]).norm())
-            .collect();
-        lengths.sort_by(f64::total_cmp);
-        let at =
-            |share: f64| lengths.get((lengths.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
-        let size = self.size_mm().map(|v| quantity(v, 1, "")).join(" × ");
-        let mut facts = vec![
-            plain("vertices", grouped(self.model.vertices().len())),
-            plain("triangles", grouped(self.model.triangles().len())),
-            closed,
-            plain("pieces", check.pieces.to_string()),
-            if self.shown.axes.is_some() {
-                plain("size along x, y, z of the axes", format!("{size} mm"))
-            } else {
-                plain("size along x, y, z", format!("{size} mm"))
-            },
-            plain("edges: median (5 % to 95 %)", {
-                let [few, half, most] = [0.05, 0.5, 0.95].map(|s| quantity(at(s), 2, ""));
-                format!("{half} mm ({few} to {most})")
-            }),
-            plain("area", quantity(check.area_mm2 / 100.0, 2, "cm²")),
-            plain("volume", quantity(check.signed_volume_mm3 / 1000.0, 2, "cm³")),
-        ];
-        if let Some(surface) = self.shown.surface {
-            facts.push(plain("made by", shortened(&surface.method, 40)));
-            let from = match surface.contours {
-                0 => format!("{} slices", surface.slices),
-                n => format!("{} slices, {n} contours", surface.slices),
-            };
-            facts.push(plain("from", from));
-            let change = 100.0 * (surface.volume_mm3 / surface.unsmoothed_volume_mm3 - 1.0);
-            let level = Level::of(change.abs(), 1.0);
-            facts.push(("volume changed by smoothing", unsigned_zero(change, 3, "%"), level));
-            facts.push(plain("pieces then", surface.pieces.to_string()));
-            let level = if surface.faults.is_empty() { Level::Good } else { Level::Bad };
-            facts.push(("faults", surface.faults.len().to_string(), level));
-        }
-        if let Some(axes) = self.shown.axes {
-            let (text, level) = source(axes);
-            facts.push(("axes", text.trim_start_matches("axes ").to_owned(), level));
-            facts.push(plain("body", body_name(axes)));
-        }
-        facts
-    }
-}
-
-fn body_name(axes: &BodyAxes) -> String {
-    let body = match axes.body {
-        BodyKind::Femur => "femur",
-        BodyKind::Tibia => "tibia",
-        BodyKind::Patella => "patella",
-        BodyKind::FemoralComponent => "femoral component",
-        BodyKind::TibialTray => "tibial tray",
-        BodyKind::Other => return "other".to_owned(),
-    };
-    match axes.side {
-        Side::Left => format!("left {body}"),
-        Side::Right => format!("right {body}"),
-    }
-}
-
-/// As [`quantity`], without the sign of a number that is shown as 0.
-fn unsigned_zero(value: f64, decimals: usize, unit: &str) -> String {
-    let text = quantity(value, decimals, unit);
-    match text.strip_prefix('-') {
-        Some(size) if !size.contains(|c: char| ('1'..='9').contains(&c)) => size.to_owned(),
-        _ => text,
-    }
-}
-
-/// A number with its thousands apart.
-fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// All warnings, each once.
