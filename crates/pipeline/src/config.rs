@@ -29,7 +29,9 @@ pub type Located = toml::Spanned<String>;
 pub struct PipelineFile {
     /// What the study is.
     pub study: StudySection,
-    /// The fluoroscopes, one table each: `[fluoroscope.A]`. One, two or more; their order is that of the file.
+    /// The fluoroscopes, one table each: `[fluoroscope.A]`. One, two or more; their order is that of the file. A study of models alone has
+    /// neither fluoroscopes nor trials.
+    #[serde(default)]
     #[schemars(with = "std::collections::BTreeMap<String, FluoroscopeSection>")]
     pub fluoroscope: InOrder<FluoroscopeSection>,
     /// The plate whose pictures show the distortion (`plate` of a fluoroscope).
@@ -50,6 +52,7 @@ pub struct PipelineFile {
     /// The bodies to find, one `[[body]]` each.
     pub body: Vec<BodySection>,
     /// The recordings, one `[[trial]]` each.
+    #[serde(default)]
     pub trial: Vec<TrialSection>,
     /// Bones in MRI, CT or maps of labels, one `[[slices]]` each; there may be none.
     #[serde(default)]
@@ -361,6 +364,12 @@ impl Default for OutputSection {
 /// The entries of a table in the order of the file, with the places of their keys.
 #[derive(Debug)]
 pub struct InOrder<T>(pub Vec<(Located, T)>);
+
+impl<T> Default for InOrder<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for InOrder<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

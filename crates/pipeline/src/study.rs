@@ -386,7 +386,8 @@ impl Check {
             ("body", "[[body]]", body.len()),
             ("trial", "[[trial]]", trial.len()),
         ] {
-            if count == 0 {
+            // A study of models alone has no pictures.
+            if count == 0 && (what == "body" || fluoroscope.0.len() + trial.len() > 0) {
                 self.list.push(
                     Problem { span: None, ..Problem::at(0..0, format!("there is no {what}")) }
                         .help(format!("add a table `{example}`")),

@@ -167,6 +167,27 @@ fn a_bone_without_a_surface_fails_alone() {
 }
 
 #[test]
+fn a_study_of_models_alone_needs_no_pictures() {
+    let scene = scene();
+    let models = "[study]\nname = \"models\"\n\n[[slices]]\nname = \"box\"\nvolume = \"mri/box.nrrd\"\nfind = { label = 2 }\n\n[[body]]\nname \
+                  = \"box\"\nslices = \"box\"\n";
+    scene.write("pipeline.toml", models.as_bytes());
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.contains("loft 1 run, 0 cached; model 1 run"), "{out}");
+    assert!(scene.path("results/models/box.stl").is_file());
+    let (_, out, _) = scene.biplane(&["run"]);
+    assert!(out.contains("Nothing to do"), "{out}");
+    // Half of a study with pictures is a fault.
+    scene.write(
+        "pipeline.toml",
+        (models.to_owned() + "\n[fluoroscope.A]\ncalibration = \"A.txt\"\n").as_bytes(),
+    );
+    let (code, _, err) = scene.biplane(&["run"]);
+    assert!(code == 2 && err.contains("there is no trial"), "{err}");
+}
+
+#[test]
 fn faults_of_a_body_are_shown_at_their_lines() {
     let scene = scene();
     let faults = [
