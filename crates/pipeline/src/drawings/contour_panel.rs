@@ -169,7 +169,7 @@ fn slice_names(svg: &mut Svg, places: &[(usize, [f64; 2])], said: &BTreeMap<usiz
         };
         let [x, y] = labels.place(at, 3.0, &text, SMALL);
         svg.group(Style { opacity: 0.75, ..Style::area("tab", "#ffffff") }, |svg| {
-            svg.rectangle([x - 2.0, y - 0.85 * SMALL], [text_width(&text, SMALL) + 4.0, 1.1 * SMALL]);
+            svg.rectangle([x - 2.0, y - 0.85 * SMALL], [0.9 * text_width(&text, SMALL) + 4.0, 1.1 * SMALL]);
         });
         svg.text([x, y], Font::new(SMALL, SLICES[kind(what)]).bold(), &text);
     }
