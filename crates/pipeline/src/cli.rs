@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use biplane_acquisition::inspect::InspectError;
+use biplane_artifact::AxesSource;
 use biplane_stage::{Clean, Context, Size, Store};
 use clap::{ArgAction, Parser, Subcommand};
 
@@ -21,7 +22,8 @@ use crate::edit::{EditCommandError, Wish, edit};
 use crate::edit_list::{EditListError, list};
 use crate::logging::{self, LogFormat};
 use crate::look::{Fate, LookError, counts, look};
-use crate::outcome::{Outcome, SlicesOutcome};
+use crate::models::MODELS;
+use crate::outcome::{ModelOutcome, Outcome, SlicesOutcome};
 use crate::run::{RunError, run};
 use crate::slices::SLICES;
 use crate::slices::command::{SliceWish, edit_slices};
@@ -583,14 +585,39 @@ fn slices_lines(study: &Study, outcome: &Outcome) -> String {
     outcome.slices.iter().map(line).collect()
 }
 
+/// What was made of bodies, a line each; nothing of mesh files that are matched as they are.
+fn models_lines(study: &Study, outcome: &Outcome) -> String {
+    let line = |found: &ModelOutcome| {
+        let name = &study.bodies[found.body].name;
+        if found.points == 0 {
+            return format!("Model of {name}: none, see above\n");
+        }
+        let mut line = format!("Model of {name}: {} points from {}", found.points, found.from);
+        match found.surface.as_ref().map(|s| s.faults.len()) {
+            Some(0) => line += ", a closed surface without faults",
+            Some(faults) => line += &format!(", {faults} faults of its surface, see above"),
+            None => {}
+        }
+        if found.axes.is_some_and(|(by, _)| by == AxesSource::Shape) {
+            line += "; its axes are proposed from the shape: look at them";
+        }
+        line + "\n"
+    };
+    let told = outcome.models.iter().filter(|m| m.made || m.axes.is_some() || m.points == 0);
+    told.map(line).collect()
+}
+
 /// What a run says at its end.
 fn closing(study: &Study, outcome: &Outcome) -> String {
     let mut text = calibration_line(outcome);
-    text += &summary::table(&summary::of_outcome(study, outcome));
+    if !outcome.frames.is_empty() {
+        text += &summary::table(&summary::of_outcome(study, outcome));
+        text += "\n";
+    }
     let cached: usize = outcome.steps.iter().map(|(_, c)| c.cached).sum();
     let ran: usize = outcome.steps.iter().map(|(_, c)| c.ran).sum();
     let [good, doubtful, failed] = outcome.verdicts();
-    text += &format!("\n{good} good, {doubtful} doubtful, {failed} failed. ");
+    text += &format!("{good} good, {doubtful} doubtful, {failed} failed. ");
     text += &match (ran, outcome.failures.len()) {
         (0, 0) => format!("Nothing to do: {cached} items cached.\n"),
         _ => {
@@ -606,6 +633,7 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
         }
     }
     text += &slices_lines(study, outcome);
+    text += &models_lines(study, outcome);
     text += &to_look_at(study, outcome);
     let rows = good + doubtful + failed;
     if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
@@ -625,6 +653,9 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     }
     if outcome.slices.iter().any(|s| s.table.is_some()) {
         text += &format!("Slices   {}\n", at(SLICES));
+    }
+    if outcome.models.iter().any(|m| m.sheet.is_some()) {
+        text += &format!("Models   {}\n", at(MODELS));
     }
     if outcome.frames.iter().any(|f| !f.overlays.is_empty()) {
         text += &format!("Overlays {}\n", at("overlays"));
