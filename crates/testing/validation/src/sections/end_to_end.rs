@@ -108,8 +108,8 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 counts[0], counts[1]
             ),
             "Each setup is calibrated from its own raw pictures, a plate before each intensifier and a frame of 30 beads in 100 mm, \
-             by the stages with their defaults; the lists of holes and beads are exact, as no laboratory's are. **Not yet end to end:** models are meshes of the analytic surfaces and not from \
-             MRI. The goal for the whole way: femoral component 0.05 mm and 0.08 degrees in the median, 0.12 mm and 0.2 degrees \
+             by the stages with their defaults; the lists of holes and beads are exact, as no laboratory's are. **Not from MRI:** models are meshes of the analytic surfaces; \
+             gVirtualXray's natural knee has them from MRI. The goal for the whole way: femoral component 0.05 mm and 0.08 degrees in the median, 0.12 mm and 0.2 degrees \
              at 95 %; tray 0.08 mm and 0.15 degrees, bones from MRI 0.2 mm and 0.3 degrees in the median."
                 .to_owned(),
         ],

@@ -182,8 +182,8 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
              a person chooses them in the thesis."
                 .to_owned(),
             "Table 4.5 moves a natural knee by known distances; an entry is how much farther than that three points of a bone, \
-             30 mm from its centroid, are found to have moved. The bones' models are meshes of the analytic surface: there is no \
-             stage yet that makes them from MRI."
+             30 mm from its centroid, are found to have moved. The bones' models are meshes of the analytic surface; Table 4.3 has \
+             them from MRI."
                 .to_owned(),
             "Table 4.6 is repeatability and not accuracy: the same pictures from ten starts. In Table 5.2 ours are the largest \
              standard deviations of Table 4.6 along any axis, as the thesis's own row is; the others' pictures were of patients."
