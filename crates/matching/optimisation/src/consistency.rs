@@ -15,7 +15,8 @@ use nalgebra::{DMatrix, Matrix2xX, Matrix6, RowDVector, SMatrix, SVector, Vector
 
 use crate::View;
 use crate::refine::{
-    Buffers, CORRELATION_PX, RefineParams, Row, collect, robust_scale_squared, robust_weight,
+    Buffers, CORRELATION_PX, LEAST_SCALE_PX, RefineParams, Row, collect_anew, robust_scale_squared,
+    robust_weight,
 };
 
 /// Unknowns of the step: six of the pose, an inset a view, and the first view's own motion.
@@ -45,8 +46,8 @@ pub fn disagreement(
     let [to_first, to_second] = [first, second].map(|v| centre - v.fluoroscope.source());
     let normal = to_first.cross(&to_second).try_normalize(1e-6 * to_first.norm() * to_second.norm())?;
     let mut buffers = Buffers::default();
-    collect(mesh, views, pose, params.final_search_px, true, params, &mut buffers);
-    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px);
+    collect_anew(mesh, views, pose, params, &mut buffers);
+    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px, LEAST_SCALE_PX);
     // The pose, an inset a view, and how far the first view's outline is moved along the normal: all at once, because turning the
     // body takes up a part of what the views disagree about.
     let rows = || {

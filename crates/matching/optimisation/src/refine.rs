@@ -1,5 +1,10 @@
 //! One descent: from a start pose to the nearest pose whose outline lies on edges.
 //!
+//! **Far.** A few samples of the outline and a few points of the edges look for each other, a turn counting as a distance; each pair
+//! gives the distance from a point to the other's tangent. The same samples serve for several steps, held fixed to the body.
+//! **Near.** The outline is traced anew for every step, and each sample's residual is where its normal crosses the nearest curve of its
+//! direction.
+//!
 //! Each view has one nuisance parameter beside the six of the pose: its **inset**, by which the image's edges lie inside
 //! the outline as a whole. At the rim of a smooth body the path of a ray starts from zero, so the steepest gradient lies
 //! inside the true outline, and smoothing adds to it: 0.37 to 0.60 px on the example study (`A_inset_px` and `B_inset_px`
@@ -7,9 +12,10 @@
 //! with the inset solved for it is 0.07 (`cargo xtask validate --only simulated`, with and without `inset_px = 0.0` under `[match]` in
 //! `pipeline.toml`). The inset is eliminated from the normal equations, so a step stays 6 x 6.
 
+use biplane_edge_field::{Sparse, SparseEdges};
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{Pose, Twist, Vector3};
-use biplane_outline::{Outline, RimMesh, Sampling};
+use biplane_geometry::{Point3, Pose, Twist, Vector2, Vector3};
+use biplane_outline::{Outline, OutlinePoint, RimMesh, Sampling};
 use nalgebra::{Matrix6, Vector6};
 
 use crate::EdgeField;
@@ -40,18 +46,40 @@ pub struct RefineParams {
     pub most_steps: u32,
 }
 
-/// Factor of the search radius from step to step.
-const SHRINK: f64 = 0.75;
-/// Least cosine between the outline's normal and an edge's direction: 45 degrees while searching, 25 at the end.
-const MIN_COSINE: (f64, f64) = (0.71, 0.906);
-/// Distance of outline samples, px: while searching, and at the end.
-const SPACING_PX: (f64, f64) = (4.0, 1.0);
+/// Far: about how many samples of the outline a view has, at least so many px apart.
+const FAR_SAMPLES: f64 = 48.0;
+const FAR_SPACING_PX: f64 = 4.0;
+/// Far: steps for one tracing of the outline, and tracings at most.
+const FAR_STEPS: u32 = 3;
+const FAR_TRACES: u32 = 8;
+/// Far: factor of the search radius from tracing to tracing.
+const FAR_SHRINK: f64 = 0.6;
+/// Far: least cosine between an outline's normal and an edge's direction.
+const FAR_COSINE: f64 = 0.3;
+/// Far: edges that are longer than so many outlines are not the body's alone, and do not look for the outline in turn.
+const FAR_CLUTTER: f64 = 2.0;
+/// Far: with steps below this the near search takes over, mm.
+const FAR_STILL_MM: f64 = 0.3;
+/// Near: factor of the search radius from step to step, and where it begins over where it ends.
+const SHRINK: f64 = 0.5;
+const NEAR_FROM: f64 = 3.0;
+/// Near: least cosine between the outline's normal and an edge's direction, 25 degrees.
+const MIN_COSINE: f64 = 0.906;
+/// Near: distance of outline samples, px.
+const SPACING_PX: f64 = 2.0;
+/// Near: the same while the radius is not the last.
+const FIRST_SPACING_PX: f64 = 4.0;
+/// Near: after a step below this the outline is not traced anew, its points are held fixed to the body, mm: they slide by its square
+/// over the surface's radius of curvature.
+const HELD_MM: f64 = 0.02;
 /// A descent whose last steps swing by no more than this, mm, because samples change their edge point, has come to rest too.
 const SWING_MM: f64 = 0.01;
 /// Largest step, mm of the centroid or of the surface by turning.
-const LONGEST_STEP_MM: f64 = 12.0;
+const LONGEST_STEP_MM: f64 = 25.0;
 /// The robust weight's scale is never below this, px: below it are the differences between mesh and body.
-const LEAST_SCALE_PX: f64 = 0.3;
+pub(crate) const LEAST_SCALE_PX: f64 = 0.3;
+/// The same while far.
+const LEAST_FAR_SCALE_PX: f64 = 4.0;
 
 /// What one view says of a pose. Residuals are those that the inset leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -102,11 +130,14 @@ impl Refined {
 pub(crate) const CORRELATION_PX: f64 = 150.0;
 
 /// One outline sample that found an edge.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Row {
     /// Along the outline's normal, px.
     pub(crate) residual: f64,
     /// Its derivative by the twist, px per mm and px per rad.
     pub(crate) derivative: Vector6<f64>,
+    /// Where it is, ideal px.
+    pub(crate) pixel: [f64; 2],
     /// Size of a pixel at its depth.
     mm_per_px: f64,
     /// Length of the outline it stands for, px.
@@ -124,13 +155,30 @@ struct Normal {
 }
 
 /// Buffers of a descent, used again from step to step.
-#[derive(Default)]
 pub(crate) struct Buffers {
     outline: Outline,
     rows: Vec<Row>,
     /// Rows of each view: where they end, and the view's inset.
     views: Vec<(usize, f64)>,
     sizes: Vec<f64>,
+    evidence: Vec<Evidence>,
+    /// Far: samples of each view and the normals that their edges should have.
+    samples: Vec<Vec<OutlinePoint>>,
+    sparse: SparseEdges,
+}
+
+impl Default for Buffers {
+    fn default() -> Self {
+        Self {
+            outline: Outline::lean(),
+            rows: Vec::new(),
+            views: Vec::new(),
+            sizes: Vec::new(),
+            evidence: Vec::new(),
+            samples: Vec::new(),
+            sparse: SparseEdges::default(),
+        }
+    }
 }
 
 impl Buffers {
@@ -143,35 +191,224 @@ impl Buffers {
 
 /// Descends from `start`.
 pub fn refine(mesh: &RimMesh, views: &[View], start: &Pose, params: &RefineParams) -> Refined {
-    let mut buffers = Buffers::default();
+    refine_with(mesh, views, start, params, &mut Buffers::default())
+}
+
+/// [`refine`] with buffers that are used again.
+pub(crate) fn refine_with(
+    mesh: &RimMesh,
+    views: &[View],
+    start: &Pose,
+    params: &RefineParams,
+    buffers: &mut Buffers,
+) -> Refined {
+    let (pose, far_steps) = approach(mesh, views, start, params, buffers);
+    let (pose, steps, still) = settle(mesh, views, pose, params, buffers);
+    if !still {
+        collect_anew(mesh, views, &pose, params, buffers);
+    }
+    finish(pose, far_steps + steps, still, params, buffers)
+}
+
+/// The far search; gives its pose and the steps taken.
+fn approach(
+    mesh: &RimMesh,
+    views: &[View],
+    start: &Pose,
+    params: &RefineParams,
+    buffers: &mut Buffers,
+) -> (Pose, u32) {
     let mut pose = *start;
-    let mut radius = params.search_px.max(params.final_search_px);
+    let mut radius = params.search_px;
+    let mut steps = 0;
+    let least = params.final_search_px * NEAR_FROM;
+    if radius <= least {
+        return (pose, steps);
+    }
+    let mut spacing = FAR_SPACING_PX;
+    for _ in 0..FAR_TRACES {
+        buffers.samples.resize_with(views.len(), Vec::new);
+        let mut longest: f64 = 0.0;
+        for (view, samples) in views.iter().zip(&mut buffers.samples) {
+            buffers.outline.trace_thinned(mesh, &pose, &view.fluoroscope, Sampling { step_px: 1e9 }, spacing);
+            longest = longest.max(buffers.outline.length_px());
+            samples.clear();
+            samples.extend_from_slice(buffers.outline.points());
+        }
+        spacing = (longest / FAR_SAMPLES).max(FAR_SPACING_PX);
+        let mut size = f64::INFINITY;
+        for _ in 0..FAR_STEPS {
+            let center = pose.transform(mesh.centroid());
+            pair(views, &center, radius, params, buffers);
+            let normal = normal_equations(buffers, radius, 0.0, LEAST_FAR_SCALE_PX);
+            let Some(twist) = solve(&normal, mesh.radius_of_gyration()) else { return (pose, steps) };
+            steps += 1;
+            pose = hold(&pose, &twist, &center, buffers);
+            size = twist.translation.norm().max(twist.rotation.norm() * mesh.radius_of_gyration());
+            if size < FAR_STILL_MM {
+                break;
+            }
+        }
+        let closest = radius <= least;
+        radius = (radius * FAR_SHRINK).max(least);
+        if size < FAR_STILL_MM {
+            if closest {
+                break;
+            }
+            radius = (radius * FAR_SHRINK).max(least);
+        }
+    }
+    (pose, steps)
+}
+
+/// Moves a pose, and with it the samples of the outline.
+fn hold(pose: &Pose, twist: &Twist, center: &Point3, buffers: &mut Buffers) -> Pose {
+    let moved = pose.moved(twist, center);
+    let turn = (moved.rotation() * pose.rotation().inverse()).to_rotation_matrix();
+    for sample in buffers.samples.iter_mut().flatten() {
+        sample.world = center + turn * (sample.world - center) + twist.translation;
+    }
+    moved
+}
+
+/// Near: samples of the outline in all views.
+fn trace(mesh: &RimMesh, views: &[View], pose: &Pose, last: bool, buffers: &mut Buffers) {
+    let step = if last { SPACING_PX } else { FIRST_SPACING_PX };
+    buffers.samples.resize_with(views.len(), Vec::new);
+    for (view, samples) in views.iter().zip(&mut buffers.samples) {
+        // Many short parts of the rim: one sample stands for all that were passed since the last one.
+        let (sampling, spacing) = (Sampling { step_px: step }, 0.5 * step);
+        buffers.outline.trace_thinned(mesh, pose, &view.fluoroscope, sampling, spacing);
+        samples.clear();
+        samples.extend_from_slice(buffers.outline.points());
+    }
+}
+
+/// Far: fills the rows with pairs of samples and edges, each from one to the other's tangent.
+fn pair(views: &[View], center: &Point3, radius: f64, params: &RefineParams, buffers: &mut Buffers) {
+    let Buffers { samples, sparse, rows, views: ends, .. } = buffers;
+    rows.clear();
+    ends.clear();
+    let turn_px = radius;
+    let most = radius * radius;
+    for (view, samples) in views.iter().zip(samples.iter_mut()) {
+        let edges = view.edges.sparse();
+        sparse.clear();
+        let mut length = 0.0;
+        for sample in samples.iter_mut() {
+            length += sample.length_px;
+            let Some(seen) = view.fluoroscope.project(&sample.world) else { continue };
+            (sample.pixel, sample.depth) = (seen.pixel, seen.depth);
+            let own = Sparse { position: seen.pixel, direction: sample.normal * params.contrast };
+            sparse.push(own);
+            let Some((edge, _)) = edges.nearest(&own, turn_px) else { continue };
+            let apart = edge.position - own.position;
+            if apart.norm_squared() > most || edge.direction.dot(&own.direction) < FAR_COSINE {
+                continue;
+            }
+            let across = edge.direction * params.contrast;
+            rows.extend(row(view, sample, center, &across, across.dot(&apart), sample.length_px));
+        }
+        if view.edges.length_px() <= FAR_CLUTTER * length {
+            let share = length / edges.points().len().max(1) as f64;
+            for edge in edges.points() {
+                let Some(number) = sparse.nearest_number(edge, turn_px) else { continue };
+                // Samples behind the source are in neither list; with any, numbers would not be theirs.
+                let Some(sample) = samples.get(number).filter(|_| sparse.points().len() == samples.len())
+                else {
+                    continue;
+                };
+                let apart = edge.position - sample.pixel;
+                if apart.norm_squared() > most
+                    || edge.direction.dot(&sample.normal) * params.contrast < FAR_COSINE
+                {
+                    continue;
+                }
+                let across = sample.normal;
+                rows.extend(row(view, sample, center, &across, across.dot(&apart), share));
+            }
+        }
+        ends.push((rows.len(), 0.0));
+    }
+}
+
+/// The row of a sample that should move by `residual` px along `across`.
+#[inline]
+fn row(
+    view: &View,
+    sample: &OutlinePoint,
+    center: &Point3,
+    across: &Vector2,
+    residual: f64,
+    length: f64,
+) -> Option<Row> {
+    let (_, by_point) = view.fluoroscope.project_with_derivative(&sample.world)?;
+    let gradient = by_point.transpose() * across;
+    let turn = (sample.world - center).cross(&gradient);
+    Some(Row {
+        residual,
+        derivative: Vector6::new(gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z),
+        pixel: [sample.pixel.x, sample.pixel.y],
+        mm_per_px: view.fluoroscope.mm_per_px(sample.depth),
+        length,
+    })
+}
+
+/// The near search; gives its pose, the steps taken and whether it came to rest.
+fn settle(
+    mesh: &RimMesh,
+    views: &[View],
+    mut pose: Pose,
+    params: &RefineParams,
+    buffers: &mut Buffers,
+) -> (Pose, u32, bool) {
+    let mut radius = params.final_search_px * NEAR_FROM;
     let (mut steps, mut final_steps, mut still) = (0, 0, false);
+    let mut held = false;
     while final_steps < params.most_steps && !still {
         let last = radius <= params.final_search_px;
-        collect(mesh, views, &pose, radius, last, params, &mut buffers);
-        let normal = normal_equations(&mut buffers, radius, params.inset_px);
+        if !held {
+            trace(mesh, views, &pose, last, buffers);
+        }
+        collect(mesh, views, &pose, radius, last, params, buffers);
+        let normal = normal_equations(buffers, radius, params.inset_px, LEAST_SCALE_PX);
         let Some(twist) = solve(&normal, mesh.radius_of_gyration()) else { break };
-        let center = pose.transform(mesh.centroid());
-        pose = pose.moved(&twist, &center);
+        pose = hold(&pose, &twist, &pose.transform(mesh.centroid()), buffers);
         steps += 1;
         let size = twist.translation.norm().max(twist.rotation.norm() * mesh.radius_of_gyration());
         if last {
             final_steps += 1;
             still = size < params.still_mm || (final_steps == params.most_steps && size < SWING_MM);
+            held = size < HELD_MM && !held;
         }
-        radius = (radius * SHRINK).max(params.final_search_px);
+        // A small step means that all within the smaller radius is known already.
+        let shrink = if size < 0.1 { 0.0 } else { SHRINK };
+        radius = (radius * shrink).max(params.final_search_px);
     }
-    finish(mesh, views, pose, steps, still, params, &mut buffers)
+    (pose, steps, still)
 }
 
 /// What the views say of a pose as it stands: no step is taken.
 pub fn assess(mesh: &RimMesh, views: &[View], pose: &Pose, params: &RefineParams) -> Refined {
-    finish(mesh, views, *pose, 0, true, params, &mut Buffers::default())
+    let mut buffers = Buffers::default();
+    collect_anew(mesh, views, pose, params, &mut buffers);
+    finish(*pose, 0, true, params, &mut buffers)
 }
 
-/// Fills the rows of all views.
-pub(crate) fn collect(
+/// Near: traces the outline and fills the rows of all views and what they say, but for residuals.
+pub(crate) fn collect_anew(
+    mesh: &RimMesh,
+    views: &[View],
+    pose: &Pose,
+    params: &RefineParams,
+    buffers: &mut Buffers,
+) {
+    trace(mesh, views, pose, true, buffers);
+    collect(mesh, views, pose, params.final_search_px, true, params, buffers);
+}
+
+/// Near: fills the rows of all views from the samples that there are.
+fn collect(
     mesh: &RimMesh,
     views: &[View],
     pose: &Pose,
@@ -179,12 +416,15 @@ pub(crate) fn collect(
     last: bool,
     params: &RefineParams,
     buffers: &mut Buffers,
-) -> Vec<Evidence> {
+) {
     buffers.rows.clear();
     buffers.views.clear();
-    let mut evidence = Vec::with_capacity(views.len());
-    for view in views {
-        evidence.push(collect_view(mesh, view, pose, radius, last, params, buffers));
+    buffers.evidence.clear();
+    let center = pose.transform(mesh.centroid());
+    for (number, view) in views.iter().enumerate() {
+        let evidence =
+            collect_view(view, &mut buffers.samples[number], &center, radius, params, &mut buffers.rows);
+        buffers.evidence.push(evidence);
         // While searching, a residual common to all of a view is motion; only at the end is it inset.
         let from = buffers.views.last().map_or(0, |v| v.0);
         let inset = if last && params.inset_px > 0.0 {
@@ -196,7 +436,6 @@ pub(crate) fn collect(
         };
         buffers.views.push((buffers.rows.len(), inset));
     }
-    evidence
 }
 
 fn median(values: &mut [f64]) -> f64 {
@@ -209,50 +448,30 @@ fn median(values: &mut [f64]) -> f64 {
 
 /// Adds the rows of one view; returns its evidence, lengths only.
 fn collect_view(
-    mesh: &RimMesh,
     view: &View,
-    pose: &Pose,
+    samples: &mut [OutlinePoint],
+    center: &Point3,
     radius: f64,
-    last: bool,
     params: &RefineParams,
-    buffers: &mut Buffers,
+    rows: &mut Vec<Row>,
 ) -> Evidence {
-    let pick = |pair: (f64, f64)| if last { pair.1 } else { pair.0 };
-    let (spacing, min_cosine) = (pick(SPACING_PX), pick(MIN_COSINE));
-    buffers.outline.trace(mesh, pose, &view.fluoroscope, Sampling { step_px: spacing });
-    let center = pose.transform(mesh.centroid());
     let mut evidence = Evidence::default();
-    let mut passed = 0.0;
-    for point in buffers.outline.points() {
+    for point in samples {
+        let Some(seen) = view.fluoroscope.project(&point.world) else { continue };
+        (point.pixel, point.depth) = (seen.pixel, seen.depth);
         evidence.outline_px += point.length_px;
-        // Many short rim edges: one sample stands for all that were passed since the last one.
-        passed += point.length_px;
-        if passed < 0.99 * spacing {
-            continue;
-        }
-        let length = std::mem::take(&mut passed);
         if !view.fluoroscope.on_image(&point.pixel, 2.0) {
             continue;
         }
-        evidence.in_image_px += length;
+        evidence.in_image_px += point.length_px;
         let direction = point.normal * params.contrast;
-        let Some(edge) = view.edges.nearest(&point.pixel, &direction, radius, min_cosine) else { continue };
-        // Where the outline's normal meets the edge's tangent.
-        let across = edge.direction * params.contrast;
-        let residual = across.dot(&(edge.position - point.pixel)) / across.dot(&point.normal);
-        if residual.abs() > radius {
+        let Some(residual) = view.edges.crossing(&point.pixel, &point.normal, &direction, radius, MIN_COSINE)
+        else {
             continue;
-        }
-        let Some((_, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else { continue };
-        let gradient = by_point.transpose() * point.normal;
-        let turn = (point.world - center).cross(&gradient);
-        evidence.matched_px += length;
-        buffers.rows.push(Row {
-            residual,
-            derivative: Vector6::new(gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z),
-            mm_per_px: view.fluoroscope.mm_per_px(point.depth),
-            length,
-        });
+        };
+        let Some(row) = row(view, point, center, &point.normal, residual, point.length_px) else { continue };
+        evidence.matched_px += point.length_px;
+        rows.push(row);
     }
     evidence
 }
@@ -263,20 +482,20 @@ pub(crate) fn robust_weight(scale_squared: f64, residual: f64) -> f64 {
 }
 
 /// Square of the robust weight's scale, px^2.
-pub(crate) fn robust_scale_squared(buffers: &mut Buffers, radius: f64) -> f64 {
+pub(crate) fn robust_scale_squared(buffers: &mut Buffers, radius: f64, least: f64) -> f64 {
     let mut sizes = std::mem::take(&mut buffers.sizes);
     sizes.clear();
     for (rows, inset) in buffers.by_view() {
         sizes.extend(rows.iter().map(|r| (r.residual - inset).abs()));
     }
     // 1.4826 turns a median size into a standard deviation; residuals beyond about 2.5 of them lose their weight.
-    let scale = (2.5 * 1.4826 * median(&mut sizes)).clamp(LEAST_SCALE_PX, (radius / 2.0).max(LEAST_SCALE_PX));
+    let scale = (2.5 * 1.4826 * median(&mut sizes)).clamp(least, (radius / 2.0).max(least));
     buffers.sizes = sizes;
     scale * scale
 }
 
-fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64) -> Normal {
-    let scale_squared = robust_scale_squared(buffers, radius);
+fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64, least_scale: f64) -> Normal {
+    let scale_squared = robust_scale_squared(buffers, radius, least_scale);
     let mut normal = Normal {
         matrix: Matrix6::zeros(),
         vector: Vector6::zeros(),
@@ -335,17 +554,10 @@ fn solve(normal: &Normal, arm: f64) -> Option<Twist> {
     Some(Twist { translation: moved * shorten, rotation: turned * (shorten / arm) })
 }
 
-fn finish(
-    mesh: &RimMesh,
-    views: &[View],
-    pose: Pose,
-    steps: u32,
-    still: bool,
-    params: &RefineParams,
-    buffers: &mut Buffers,
-) -> Refined {
-    let mut evidence = collect(mesh, views, &pose, params.final_search_px, true, params, buffers);
-    let normal = normal_equations(buffers, params.final_search_px, params.inset_px);
+/// The answer from the rows as they are.
+fn finish(pose: Pose, steps: u32, still: bool, params: &RefineParams, buffers: &mut Buffers) -> Refined {
+    let normal = normal_equations(buffers, params.final_search_px, params.inset_px, LEAST_SCALE_PX);
+    let mut evidence = buffers.evidence.clone();
     for ((rows, inset), evidence) in buffers.by_view().zip(&mut evidence) {
         evidence.inset_px = -inset;
         for row in rows {

@@ -17,6 +17,7 @@
 
 mod grid;
 mod rim;
+mod tree;
 mod visible;
 
 pub use grid::GridOutline;
