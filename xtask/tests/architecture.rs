@@ -20,6 +20,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
     &["biplane-surface"],
     &["biplane-edge-field", "biplane-outline"],
+    &["biplane-silhouette"],
     &[
         "biplane-acquisition",
         "biplane-spots",
@@ -43,7 +44,7 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 20] = [
+const METHOD: [&str; 21] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
@@ -63,6 +64,7 @@ const METHOD: [&str; 20] = [
     "crates/matching/fluoroscope",
     "crates/matching/outline",
     "crates/matching/optimisation",
+    "crates/matching/silhouette",
     "crates/testing/phantom",
 ];
 

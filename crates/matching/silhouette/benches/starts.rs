@@ -1,0 +1,2 @@
+//! How long starts without a guess take: `cargo bench -p biplane-silhouette`.
+fn main() {}
