@@ -616,8 +616,8 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     }
     let cached: usize = outcome.steps.iter().map(|(_, c)| c.cached).sum();
     let ran: usize = outcome.steps.iter().map(|(_, c)| c.ran).sum();
-    let [good, doubtful, failed] = outcome.verdicts();
-    text += &format!("{good} good, {doubtful} doubtful, {failed} failed. ");
+    let [good, doubtful, ambiguous, failed] = outcome.verdicts();
+    text += &format!("{}. ", summary::counts([good, doubtful, ambiguous, failed]));
     text += &match (ran, outcome.failures.len()) {
         (0, 0) => format!("Nothing to do: {cached} items cached.\n"),
         _ => {
@@ -635,7 +635,7 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     text += &slices_lines(study, outcome);
     text += &models_lines(study, outcome);
     text += &to_look_at(study, outcome);
-    let rows = good + doubtful + failed;
+    let rows = good + doubtful + ambiguous + failed;
     if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
         text += "\nHardly a match is good. Check first: are the folders (or calibrations) of two views exchanged? Do the\n\
                  paired frames belong together (`offset`)? Are the start poses in the world of the calibration, of these\n\
@@ -668,14 +668,8 @@ fn status(study: &Study) -> Ended {
     if path.is_file() {
         let rows = summary::of_file(&path).map_err(|e| (End::BadInput, e.to_string()))?;
         print(&summary::table(&rows));
-        let of = |verdict: &str| rows.iter().filter(|r| r.verdict == verdict).count();
-        print(&format!(
-            "\n{} good, {} doubtful, {} failed ({})\n",
-            of("good"),
-            of("doubtful"),
-            of("failed"),
-            study.relative(&path)
-        ));
+        let verdicts = summary::VERDICTS.map(|v| rows.iter().filter(|r| r.verdict == v.word()).count());
+        print(&format!("\n{} ({})\n", summary::counts(verdicts), study.relative(&path)));
     } else {
         print("no results yet: `biplane run` makes them\n");
     }

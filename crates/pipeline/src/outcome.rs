@@ -222,9 +222,9 @@ impl Outcome {
         self.rows().flat_map(|(frame, body)| body.flagged().map(move |(slot, why)| (frame, body, slot, why)))
     }
 
-    /// How many verdicts are good, doubtful and failed.
-    pub fn verdicts(&self) -> [usize; 3] {
-        let mut counts = [0; 3];
+    /// How many verdicts are good, doubtful, ambiguous and failed.
+    pub fn verdicts(&self) -> [usize; 4] {
+        let mut counts = [0; 4];
         for (_, body) in self.rows() {
             counts[body.verdict() as usize] += 1;
         }

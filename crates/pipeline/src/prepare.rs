@@ -354,7 +354,9 @@ impl Faults<'_> {
 
 /// `None` where raw pictures say where a view stands.
 fn calibration(view: &View) -> Result<Option<Calibration>, CalibrationError> {
-    let ViewSource::File { calibration, pixel_origin, distortion } = &view.source else { return Ok(None) };
+    let ViewSource::File { calibration, pixel_origin, distortion, .. } = &view.source else {
+        return Ok(None);
+    };
     let origin = match pixel_origin {
         config::Origin::Centre => PixelOrigin::Centre,
         config::Origin::Corner => PixelOrigin::Corner,

@@ -64,7 +64,7 @@ struct Shown {
 struct Line {
     body: String,
     colour: String,
-    counts: [usize; 3],
+    counts: [usize; 4],
     /// Place of the frame's card, its label, the verdict.
     frames: Vec<(usize, String, &'static str)>,
     fit_mm: String,
@@ -152,6 +152,7 @@ struct Page<'a> {
     version: &'a str,
     good: usize,
     doubtful: usize,
+    ambiguous: usize,
     failed: usize,
     frames: usize,
     flagged: usize,
@@ -173,12 +174,13 @@ struct Page<'a> {
 pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<String, ReportError> {
     let mut environment = minijinja::Environment::new();
     environment.add_template("report.html", include_str!("report.html"))?;
-    let [good, doubtful, failed] = outcome.verdicts();
+    let [good, doubtful, ambiguous, failed] = outcome.verdicts();
     let page = Page {
         name: &study.name,
         version: env!("CARGO_PKG_VERSION"),
         good,
         doubtful,
+        ambiguous,
         failed,
         frames: outcome.frames.len(),
         flagged: outcome.flagged().count(),
@@ -379,7 +381,7 @@ fn line(study: &Study, outcome: &Outcome, trial: usize, place: usize) -> Line {
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).map_or("-".to_owned(), |v| format!("{v:.3}"))
     };
-    let mut counts = [0; 3];
+    let mut counts = [0; 4];
     for (.., body) in &own {
         counts[body.verdict() as usize] += 1;
     }
@@ -421,6 +423,7 @@ mod tests {
                 calibration: "c".into(),
                 pixel_origin: crate::config::Origin::Centre,
                 distortion: None,
+                uncertainty: None,
             },
         };
         Study {

@@ -18,6 +18,7 @@
 //! **Guaranteed:** a result depends on inputs and parameters alone. **Not guaranteed:** that the best basin was found; the
 //! verdict says what speaks against a pose, from the fit alone.
 
+mod answer;
 mod bingham;
 mod consistency;
 mod judge;
@@ -25,6 +26,7 @@ mod refine;
 mod stage;
 mod starts;
 
+pub use answer::with_calibration;
 pub use bingham::{
     BinghamParams, BinghamView, Contour, Descent, best, descend, match_bingham, own_contour, spread,
 };

@@ -1,14 +1,14 @@
 //! The stage `match`: the curves of a frame's views, their calibrations, a body's mesh and a start in; its pose out.
 
-use biplane_artifact::{Calibration, Curves, Match, ModelMesh, Start, Verdict, ViewFit};
+use biplane_artifact::{Calibration, CalibrationUncertainty, Curves, Match, ModelMesh, Start, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
 use biplane_outline::RimMesh;
 use biplane_stage::{Context, Stage, inputs};
-use nalgebra::Matrix6;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::answer::{answer_of, best_end, with_calibration};
 use crate::{
     BinghamParams, BinghamView, EdgeField, Limits, RefineParams, Refined, View, judge, match_bingham,
     own_contour, refine, starts,
@@ -25,6 +25,8 @@ inputs! {
         model: ModelMesh,
         /// Where to start.
         start: Start,
+        /// How sure the calibrations are, all together; empty where nothing is known of it.
+        calibration_uncertainty: [CalibrationUncertainty],
     }
 }
 
@@ -241,43 +243,18 @@ pub fn match_body(
     let sigma_rad = params.retry_deg.to_radians();
     let others =
         starts::around(start, mesh.centroid(), params.retry_mm, sigma_rad, params.seed, params.retries);
-    let mut best: Option<Refined> = None;
-    let mut steps = 0;
+    let mut ends: Vec<Refined> = Vec::new();
     for from in std::iter::once(*start).chain(others) {
         if cancelled() {
             return Err(MatchError::Cancelled);
         }
-        let refined = refine(mesh, views, &from, &search);
-        steps += refined.steps;
-        if best.as_ref().is_none_or(|b| refined.score() > b.score()) {
-            best = Some(refined);
-        }
-        if best.as_ref().is_some_and(|b| judge(b, names, &limits).1 == Verdict::Good) {
+        ends.push(refine(mesh, views, &from, &search));
+        if best_end(&ends).is_some_and(|end| judge(end, names, &limits).1 == Verdict::Good) {
             break;
         }
     }
-    let Some(best) = best else { return Err(MatchError::Cancelled) };
-    let (fits, verdict, reason) = judge(&best, names, &limits);
-    Ok(answer(&best, fits, verdict, reason, steps))
-}
-
-/// The answer of a match, as it is stored.
-pub(crate) fn answer(
-    found: &Refined,
-    views: Vec<ViewFit>,
-    verdict: Verdict,
-    reason: String,
-    iterations: u32,
-) -> Match {
-    let covariance = found.covariance.unwrap_or_else(|| Matrix6::from_element(f64::MAX));
-    Match {
-        pose: found.pose.into(),
-        verdict,
-        reason,
-        views,
-        covariance: std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)])),
-        iterations,
-    }
+    let steps = ends.iter().map(|end| end.steps).sum();
+    answer_of(&ends, mesh, names, &limits, steps).ok_or(MatchError::Cancelled)
 }
 
 /// The stage `match`.
@@ -310,7 +287,7 @@ impl Stage for MatchBody {
             .collect();
         let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
         let start = &inputs.start.0;
-        match params.method {
+        let found = match params.method {
             Method::Rim => match_body(&mesh, &views, &names, start, params, || context.cancelled()),
             Method::Bingham2006 => {
                 let centre = start.transform(mesh.centroid());
@@ -330,6 +307,10 @@ impl Stage for MatchBody {
                 let judged = (views.as_slice(), names.as_slice());
                 match_bingham(points, &contours, &mesh, judged, start, params, || context.cancelled())
             }
-        }
+        }?;
+        Ok(match inputs.calibration_uncertainty.first() {
+            None => found,
+            Some(uncertainty) => with_calibration(found, &mesh, &views, uncertainty, &params.search()),
+        })
     }
 }
