@@ -1,15 +1,20 @@
 //! The sections of `docs/validation.md`, in its order: what `cargo xtask validate` measures.
 
 mod agreement;
+mod capture;
 mod coverage;
 mod distortion;
 mod edges;
 mod end_to_end;
 mod environment;
 mod ideal;
+mod missing;
 mod models;
 mod moved;
 mod natural;
+mod one_view;
+mod peers;
+mod random;
 mod spheres;
 mod studies;
 mod sweeps;
@@ -35,10 +40,14 @@ pub type Measure = fn(&Lab) -> Result<Option<Section>, SectionError>;
 /// All of them.
 pub const ALL: &[(&str, Measure)] = &[
     ("ideal", ideal::measure),
+    ("random", random::measure),
+    ("capture", capture::measure),
+    ("peers", peers::measure),
     ("natural", natural::measure),
     ("spheres", spheres::measure),
     ("moved", moved::measure),
     ("views", views::measure),
+    ("one-view", one_view::measure),
     ("distortion", distortion::measure),
     ("environment", environment::measure),
     ("edges", edges::measure),
@@ -46,6 +55,7 @@ pub const ALL: &[(&str, Measure)] = &[
     ("end-to-end", end_to_end::measure),
     ("budget", end_to_end::budget),
     ("sweeps", sweeps::measure),
+    ("missing", missing::measure),
     ("coverage", coverage::measure),
     ("simulated", studies::simulated),
     ("far", studies::far),

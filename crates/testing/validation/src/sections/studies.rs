@@ -117,7 +117,7 @@ pub fn simulated(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut outlines = table("outlines-made-elsewhere", "ideal outlines made elsewhere");
     for body in elsewhere::BODIES {
         for points in [3_500, 15_000] {
-            let scene = elsewhere::scene(&lab.root, body, points, &lab::ideal_params())?;
+            let scene = elsewhere::scene(&lab.root, body, 36_000, points, &lab::ideal_params())?;
             let count = lab.count(50, 5);
             let draw = |truth: &_, centroid: &_, frame| set_a(truth, centroid, lab.seed, frame, count);
             let all = outcomes(&scene, Method::Default, &lab::thesis_params(), &draw);
