@@ -19,7 +19,7 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-stage"],
     &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
     &["biplane-surface"],
-    &["biplane-edge-field", "biplane-outline"],
+    &["biplane-edge-bias", "biplane-edge-field", "biplane-outline"],
     &["biplane-silhouette"],
     &[
         "biplane-acquisition",
@@ -44,7 +44,7 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 21] = [
+const METHOD: [&str; 22] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
@@ -60,6 +60,7 @@ const METHOD: [&str; 21] = [
     "crates/analysis/spline",
     "crates/analysis/spots",
     "crates/matching/contour",
+    "crates/matching/edge-bias",
     "crates/matching/edge-field",
     "crates/matching/fluoroscope",
     "crates/matching/outline",

@@ -8,6 +8,7 @@
 //! ray, is decided exactly, by floating point where its error bound allows and by exact expansions where not. **Not
 //! guaranteed:** anything for coordinates beyond 1e100 mm or differences below 1e-100 mm.
 
+mod beam;
 mod check;
 mod closest;
 mod crossing;
