@@ -62,7 +62,7 @@ impl ChordFinder {
         // Rays of all depths are within this of the middle one, and a little beyond the body they part by as little.
         let half = (reach + RIM_PX) / 2.0;
         let middle = ray + inward * (reach / 2.0);
-        surface.along(source, &middle, 1.2 * half * inward.norm(), |corners| {
+        surface.along(source, &middle, &normal, 1.2 * half * inward.norm(), |corners| {
             let heights = corners.map(|c| normal.dot(&(c - source)));
             let below = heights.map(|h| h < 0.0);
             let count = below.iter().filter(|b| **b).count();

@@ -58,7 +58,7 @@ pub struct Estimate {
 }
 
 /// Rounds of Gauss and Newton.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 2;
 /// Least and greatest blur, px: chords do not reach farther in.
 const BLUR_PX: (f64, f64) = (0.05, 2.8);
 /// Least and greatest attenuation, 1/mm.
