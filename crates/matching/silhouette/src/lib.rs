@@ -1,32 +1,48 @@
-//! Start poses without a guess: a body's silhouettes over all rotations against the shadows of a frame.
+//! Start poses without a guess: a body's silhouettes over all rotations against the edges of a frame.
 //!
-//! Banks and Hodge (1996) and Hoff et al. (1998) keep a library of rendered silhouettes and look for the most alike. Here the
-//! library is the body's support function over the sphere ([`SilhouetteLibrary`]): the silhouette seen from any side, turned in any
-//! way, is the part of that function along a circle, so one table of 65,536 numbers holds them all, without an angle between one
-//! template and the next. Tangent lines of a shadow make planes through the source, and the support function says for any rotation
-//! where the body must be to touch them all: position and depth in closed form, in one view or many, exact for a cone of rays.
+//! Banks and Hodge (1996) and Hoff et al. (1998) keep a library of rendered silhouettes and look for the most alike. Here it is kept
+//! in two forms ([`SilhouetteLibrary`]).
 //!
-//! **Guaranteed:** the same candidates for the same curves. **Not guaranteed:** that the right one is the first: what only
-//! concavities tell apart is left to the match, which is tried from each.
+//! **The body alone** ([`SilhouetteLibrary::isolated`]): the silhouette seen from any side, turned in any way, is the body's support
+//! function along a circle of the sphere, so one table of 65,536 numbers holds them all, without an angle between one template and the
+//! next. Tangent lines of a shadow make planes through the source, and the support function says for any rotation where the body must
+//! be to touch them all: position and depth in closed form, in one view or many, exact for a cone of rays.
+//!
+//! **Among other edges** ([`SilhouetteLibrary::among`]): silhouettes as few points with normals, from directions 10 degrees apart, are
+//! counted against edges of their direction at every place of every picture; what a view finds is held against the others depth by
+//! depth.
+//!
+//! **Guaranteed:** the same candidates for the same curves; bodies with mirror basins have a candidate in each. **Not guaranteed:** that
+//! the right one is the first, or that it is nearer than about 15 degrees: a descent from each decides ([`descend`]).
 
+mod descend;
+mod octahedron;
 mod search;
 mod support;
 mod tangent;
+mod template;
+mod vote;
 
 use biplane_artifact::Curves;
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{Mesh, Point2, Point3, Pose, Vector3};
+use biplane_geometry::{EdgePoint, Mesh, Point2, Point3, Pose, Vector3};
 use nalgebra::{Matrix3, UnitQuaternion};
 
+pub use descend::descend;
+
+use search::Fit;
 use support::Support;
 use tangent::{Tangent, hull, middle, tangents};
+use template::Templates;
+use vote::{EdgeMaps, Found, vote};
 
 /// A pose to start from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// The pose.
     pub pose: Pose,
-    /// Root mean square distance of the shadows' tangent planes from the body at this pose, mm.
+    /// How far the shadows are from the body at this pose, mm: root mean square distance of tangent planes where the body is alone,
+    /// else the mean distance of its silhouette from edges, of which none counts for more than about 30 px.
     pub misfit_mm: f64,
 }
 
@@ -34,74 +50,149 @@ pub struct Candidate {
 #[derive(Debug, Clone)]
 pub struct SilhouetteLibrary {
     support: Support,
+    templates: Templates,
     centroid: Point3,
     rotations: Vec<UnitQuaternion<f64>>,
 }
 
 /// Tangent lines around a shadow.
 const TANGENTS: usize = 40;
+/// Fewer tangent planes do not hold six numbers well.
+const LEAST_TANGENTS: usize = 16;
+/// A body is alone where this share of its tangents is left and the best pose touches them within this part of its radius.
+const ALONE: (f64, f64) = (0.6, 0.01);
+/// Candidates among other edges that are nearer than this, rad and mm, are one.
+const APART: (f64, f64) = (0.2, 12.0);
+
+/// One view: its edges in ideal pixels, and their hull.
+struct Seen<'a> {
+    view: &'a Fluoroscope,
+    edges: Vec<EdgePoint>,
+    hull: Vec<Point2>,
+}
+
+impl<'a> Seen<'a> {
+    fn of(&(view, curves): &(&'a Fluoroscope, &Curves)) -> Self {
+        let mut edges = Vec::with_capacity(curves.point_count());
+        for curve in &curves.0 {
+            let corrected = view.distortion().map(|d| d.correct(curve));
+            edges.extend_from_slice(&corrected.as_ref().unwrap_or(curve).points);
+        }
+        edges.retain(|e| e.position.coords.iter().chain(e.direction.iter()).all(|v| v.is_finite()));
+        let hull = hull(edges.iter().map(|e| e.position).collect());
+        Self { view, edges, hull }
+    }
+}
 
 impl SilhouetteLibrary {
     /// Of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let centroid = mesh.area_centroid();
-        Self { support: Support::of(mesh, &centroid), centroid, rotations: search::rotations() }
+        let support = Support::of(mesh, &centroid);
+        let templates = Templates::of(mesh, &centroid, support.radius());
+        Self { support, templates, centroid, rotations: search::rotations() }
     }
 
-    /// At most `count` poses of a body whose shadows have these curves (recorded pixels), the likeliest first.
-    pub fn starts(&self, views: &[(&Fluoroscope, &Curves)], count: usize) -> Vec<Candidate> {
-        let hulls: Vec<Vec<Point2>> =
-            views.iter().map(|(view, curves)| hull(ideal_points(view, curves))).collect();
-        let shadows: Vec<(&Fluoroscope, &[Point2])> =
-            views.iter().zip(&hulls).map(|((view, _), hull)| (*view, hull.as_slice())).collect();
-        self.of_shadows(&shadows, count)
+    /// At most `count` poses to start from, the likeliest first, for a body seen in `views` with these curves (recorded pixels);
+    /// `contrast` is +1 for a body darker than what is around it, -1 for a brighter one.
+    ///
+    /// Whether the curves are the body's alone need not be said: where they are, they fit as nothing else does.
+    pub fn starts(&self, views: &[(&Fluoroscope, &Curves)], contrast: f64, count: usize) -> Vec<Candidate> {
+        let seen: Vec<Seen> = views.iter().map(Seen::of).collect();
+        let (alone, share) = self.alone(&seen, contrast, count);
+        let fits = |f: &Fit| share >= ALONE.0 && f.misfit_mm <= ALONE.1 * self.templates.radius;
+        if alone.first().is_some_and(fits) {
+            return alone.iter().map(|f| self.candidate(f)).collect();
+        }
+        self.voted(&seen, contrast, &alone, count)
     }
 
-    /// The poses that fit one hull a view.
-    fn of_shadows(&self, shadows: &[(&Fluoroscope, &[Point2])], count: usize) -> Vec<Candidate> {
+    /// At most `count` poses for curves that are the body's alone, or nearly all of it in each view; parts may be missing.
+    pub fn isolated(&self, views: &[(&Fluoroscope, &Curves)], contrast: f64, count: usize) -> Vec<Candidate> {
+        let seen: Vec<Seen> = views.iter().map(Seen::of).collect();
+        self.alone(&seen, contrast, count).0.iter().map(|f| self.candidate(f)).collect()
+    }
+
+    /// At most `count` poses for curves of everything in the pictures.
+    pub fn among(&self, views: &[(&Fluoroscope, &Curves)], contrast: f64, count: usize) -> Vec<Candidate> {
+        let seen: Vec<Seen> = views.iter().map(Seen::of).collect();
+        self.voted(&seen, contrast, &[], count)
+    }
+
+    /// The body's area centroid, model coordinates, mm.
+    pub fn centroid(&self) -> &Point3 {
+        &self.centroid
+    }
+
+    fn pose(&self, rotation: UnitQuaternion<f64>, centre: &Point3) -> Pose {
+        Pose::new(rotation, centre.coords - rotation * self.centroid.coords)
+    }
+
+    fn candidate(&self, fit: &Fit) -> Candidate {
+        Candidate { pose: self.pose(fit.rotation, &fit.centre), misfit_mm: fit.misfit_mm }
+    }
+
+    /// Poses that fit the hulls of all edges, and the share of tangents that were left to fit.
+    fn alone(&self, seen: &[Seen], contrast: f64, count: usize) -> (Vec<Fit>, f64) {
         let planes: Vec<Tangent> =
-            shadows.iter().flat_map(|(view, hull)| tangents(hull, view, TANGENTS)).collect();
-        let Some(about) = self.near(shadows, &planes) else { return Vec::new() };
-        search::search(&self.support, &planes, &about, &self.rotations, count)
-            .into_iter()
-            .map(|fit| Candidate {
-                pose: Pose::new(fit.rotation, fit.centre.coords - fit.rotation * self.centroid.coords),
-                misfit_mm: fit.misfit_mm,
+            seen.iter().flat_map(|s| tangents(&s.edges, &s.hull, s.view, contrast, TANGENTS)).collect();
+        let share = planes.len() as f64 / (TANGENTS * seen.len().max(1)) as f64;
+        let near = if planes.len() < LEAST_TANGENTS { None } else { self.near(seen, &planes) };
+        let fits = near.map(|about| search::search(&self.support, &planes, &about, &self.rotations, count));
+        (fits.unwrap_or_default(), share)
+    }
+
+    /// Poses that most silhouette points vote for, with further ones that are to be held against them.
+    fn voted(&self, seen: &[Seen], contrast: f64, further: &[Fit], count: usize) -> Vec<Candidate> {
+        let maps: Vec<EdgeMaps> = seen.iter().map(|s| EdgeMaps::new(s.view, &s.edges, contrast)).collect();
+        let rays: Vec<(Point3, Vector3)> = seen
+            .iter()
+            .filter_map(|s| {
+                Some((*s.view.source(), s.view.ray(&Point2::from(s.view.size().map(|n| n as f64 / 2.0)))?))
             })
-            .collect()
+            .collect();
+        let mut found = vote(&maps, &self.templates, meeting(&rays).as_ref());
+        found.extend(further.iter().map(|f| Found::at(&maps, &self.templates, f.rotation, f.centre)));
+        found.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let mut kept: Vec<Found> = Vec::new();
+        for f in found {
+            let apart = |k: &Found| {
+                k.rotation.angle_to(&f.rotation) > APART.0 || (k.centre - f.centre).norm() > APART.1
+            };
+            if kept.len() < count && kept.iter().all(apart) {
+                kept.push(f);
+            }
+        }
+        let candidate = |f: Found| Candidate {
+            pose: self.pose(f.rotation, &f.centre),
+            misfit_mm: vote::misfit_mm(&maps, &f),
+        };
+        kept.into_iter().map(candidate).collect()
     }
 
     /// A point near the body: where the rays through the shadows' middles meet; for one view by the shadow's size.
-    fn near(&self, shadows: &[(&Fluoroscope, &[Point2])], planes: &[Tangent]) -> Option<Point3> {
-        let rays: Vec<(Point3, Vector3)> = shadows
-            .iter()
-            .filter_map(|(view, hull)| Some((*view.source(), view.ray(&middle(hull)?)?)))
-            .collect();
-        let (source, ray) = *rays.first()?;
-        let (mut matrix, mut vector) = (Matrix3::zeros(), Vector3::zeros());
-        for (source, ray) in &rays {
-            let across = Matrix3::identity() - ray * ray.transpose();
-            matrix += across;
-            vector += across * source.coords;
+    fn near(&self, seen: &[Seen], planes: &[Tangent]) -> Option<Point3> {
+        let rays: Vec<(Point3, Vector3)> =
+            seen.iter().filter_map(|s| Some((*s.view.source(), s.view.ray(&middle(&s.hull)?)?))).collect();
+        if let Some(point) = meeting(&rays) {
+            return Some(point);
         }
-        if rays.len() > 1
-            && let Some(inverse) = matrix.try_inverse()
-        {
-            return Some(Point3::from(inverse * vector));
-        }
+        let (source, ray) = rays.first()?;
         // A plane that touches the body a distance away leans by the body's reach over that distance.
-        let lean: f64 = planes.iter().map(|p| -p.normal.dot(&ray)).sum();
+        let lean: f64 = planes.iter().map(|p| -p.normal.dot(ray)).sum();
         let away = self.support.mean() * planes.len() as f64 / lean;
         away.is_finite().then(|| source + ray * away)
     }
 }
 
-/// The points of curves in ideal pixels.
-fn ideal_points(view: &Fluoroscope, curves: &Curves) -> Vec<Point2> {
-    let mut points = Vec::with_capacity(curves.point_count());
-    for curve in &curves.0 {
-        let corrected = view.distortion().map(|d| d.correct(curve));
-        points.extend(corrected.as_ref().unwrap_or(curve).points.iter().map(|p| p.position));
+/// Where rays come nearest to each other; `None` for one alone.
+fn meeting(rays: &[(Point3, Vector3)]) -> Option<Point3> {
+    let (mut matrix, mut vector) = (Matrix3::zeros(), Vector3::zeros());
+    for (source, ray) in rays {
+        let across = Matrix3::identity() - ray * ray.transpose();
+        matrix += across;
+        vector += across * source.coords;
     }
-    points
+    let inverse = if rays.len() > 1 { matrix.try_inverse() } else { None };
+    Some(Point3::from(inverse? * vector))
 }

@@ -35,23 +35,28 @@ pub(crate) struct Fit {
     pub misfit_mm: f64,
 }
 
-/// Rotations spread evenly: directions on a spiral (Saff and Kuijlaars 1997), each with turns about it.
-pub(crate) fn rotations() -> Vec<UnitQuaternion<f64>> {
-    let spacing = SPACING_DEG.to_radians();
-    let turns = (std::f64::consts::TAU / spacing).round() as usize;
-    let directions = (4.0 * std::f64::consts::PI / (spacing * spacing)).round() as usize;
+/// Rotations that turn +z to directions spread evenly, on a spiral (Saff and Kuijlaars 1997).
+pub(crate) fn directions() -> Vec<UnitQuaternion<f64>> {
+    let count = (4.0 * std::f64::consts::PI / SPACING_DEG.to_radians().powi(2)).round() as usize;
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-    let mut all = Vec::with_capacity(turns * directions);
-    for k in 0..directions {
-        let z = 1.0 - (2 * k + 1) as f64 / directions as f64;
+    let turned = |k: usize| {
+        let z = 1.0 - (2 * k + 1) as f64 / count as f64;
         let polar = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), z.acos());
-        let azimuth = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), golden * k as f64);
-        for j in 0..turns {
+        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), golden * k as f64) * polar
+    };
+    (0..count).map(turned).collect()
+}
+
+/// Rotations spread evenly: directions, each with turns about it.
+pub(crate) fn rotations() -> Vec<UnitQuaternion<f64>> {
+    let turns = (360.0 / SPACING_DEG).round() as usize;
+    let turned = |(k, direction): (usize, UnitQuaternion<f64>)| {
+        (0..turns).map(move |j| {
             let about = std::f64::consts::TAU * (j as f64 + 0.5 * (k % 2) as f64) / turns as f64;
-            all.push(azimuth * polar * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), about));
-        }
-    }
-    all
+            direction * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), about)
+        })
+    };
+    directions().into_iter().enumerate().flat_map(turned).collect()
 }
 
 /// How well every rotation fits: the mean squared residual, mm^2, its translation taken out. `about` is near the body.

@@ -1,10 +1,11 @@
 //! A body's support function over the whole sphere of directions.
 //!
 //! `H(m) = max over the body of m . x` for a unit vector `m`: how far the body reaches along `m`. A plane with outward normal `m`
-//! touches the body's convex hull where `m . x = H(m)`. It is kept on an octahedral map (Meyer et al. 2010): the sphere projected
-//! onto an octahedron whose faces unfold into a square, one cell of which is 0.5 to 1.2 degrees wide.
+//! touches the body's convex hull where `m . x = H(m)`. It is kept on an octahedral map, one cell of which is 0.5 to 1.2 degrees wide.
 
 use biplane_geometry::{Mesh, Point3, Vector3};
+
+use crate::octahedron;
 
 /// Cells along a side of the map.
 const SIDE: usize = 256;
@@ -20,19 +21,6 @@ pub(crate) struct Support {
     extreme: Vec<u32>,
     /// Vertices that are extreme in some direction, about the centroid, mm.
     vertices: Vec<Vector3>,
-}
-
-/// The unit vector at a place of the map, each coordinate -1 to 1.
-fn unfold(x: f64, y: f64) -> Vector3 {
-    let z = 1.0 - x.abs() - y.abs();
-    let fold = (-z).max(0.0);
-    Vector3::new(x - fold.copysign(x), y - fold.copysign(y), z).normalize()
-}
-
-/// The middles of the cells of a map of `side` cells a side.
-fn directions(side: usize) -> impl Iterator<Item = Vector3> {
-    let middle = move |k: usize| (2 * k + 1) as f64 / side as f64 - 1.0;
-    (0..side * side).map(move |cell| unfold(middle(cell % side), middle(cell / side)))
 }
 
 /// Coordinates of points as three lists, padded by repeating the last to a whole number of lanes.
@@ -82,15 +70,17 @@ impl Support {
             mesh.vertices().iter().zip(&used).filter(|(_, used)| **used).map(|(v, _)| v - centroid).collect();
         let cloud = Cloud::of(&points);
         let mut extremes: Vec<usize> =
-            directions(COARSE).map(|m| cloud.farthest(&m).min(points.len() - 1)).collect();
+            octahedron::middles(COARSE).map(|m| cloud.farthest(&m).min(points.len() - 1)).collect();
         extremes.sort_unstable();
         extremes.dedup();
         let vertices: Vec<Vector3> = extremes.iter().map(|&k| points[k]).collect();
         let cloud = Cloud::of(&vertices);
         let extreme: Vec<u32> =
-            directions(SIDE).map(|m| cloud.farthest(&m).min(vertices.len() - 1) as u32).collect();
-        let reach =
-            directions(SIDE).zip(&extreme).map(|(m, &v)| m.dot(&vertices[v as usize]) as f32).collect();
+            octahedron::middles(SIDE).map(|m| cloud.farthest(&m).min(vertices.len() - 1) as u32).collect();
+        let reach = octahedron::middles(SIDE)
+            .zip(&extreme)
+            .map(|(m, &v)| m.dot(&vertices[v as usize]) as f32)
+            .collect();
         Self { reach, extreme, vertices }
     }
 
@@ -112,15 +102,16 @@ impl Support {
         self.reach.iter().map(|h| f64::from(*h)).sum::<f64>() / self.reach.len() as f64
     }
 
+    /// Distance of the farthest vertex, mm.
+    pub fn radius(&self) -> f64 {
+        self.vertices.iter().map(|v| v.norm()).fold(0.0, f64::max)
+    }
+
     /// The vertex that reaches farthest along the unit vector `m`, among those of the cells around its place.
     pub fn farthest(&self, m: &Vector3) -> &Vector3 {
-        let scale = 1.0 / (m.x.abs() + m.y.abs() + m.z.abs());
-        let (u, v) = (m.x * scale, m.y * scale);
-        let (u, v) =
-            if m.z < 0.0 { ((1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v)) } else { (u, v) };
         let place = |w: f64| (w + 1.0) * (SIDE as f64 / 2.0) - 0.5;
         let cell = |w: f64| w.clamp(0.0, (SIDE - 1) as f64) as usize;
-        let (u, v) = (place(u), place(v));
+        let [u, v] = octahedron::fold(m).map(place);
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
         let at = |(du, dv)| &self.vertices[self.extreme[cell(v + dv) * SIDE + cell(u + du)] as usize];
         corners.map(at).into_iter().fold(at((0.0, 0.0)), |a, b| if b.dot(m) > a.dot(m) { b } else { a })

@@ -5,7 +5,7 @@
 //! `M' (u, -c)`: exact for a cone of rays, however deep the body is.
 
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{Point2, Point3, Vector2, Vector3};
+use biplane_geometry::{EdgePoint, Point2, Point3, Vector2, Vector3};
 
 /// A plane through the source of a view that touches the body from outside.
 #[derive(Debug, Clone, Copy)]
@@ -55,18 +55,44 @@ pub(crate) fn middle(hull: &[Point2]) -> Option<Point2> {
     (area > 1.0).then(|| first + sum / area)
 }
 
-/// Tangent planes in `count` directions around a hull, without those that touch it where the picture ends.
-pub(crate) fn tangents(hull: &[Point2], view: &Fluoroscope, count: usize) -> Vec<Tangent> {
-    /// What is so near the picture's border was cut by it, px.
-    const BORDER_PX: f64 = 3.0;
+/// What is so near the picture's border was cut by it, px.
+const BORDER_PX: f64 = 3.0;
+/// Edges so near a touching point, px, must face as the tangent does within so much, rad, or face to both sides of it, as at a corner.
+const BESIDE: (f64, f64) = (6.0, 0.3);
+/// An edge that is turned from a tangent by more than this, rad, faces backward.
+const BACKWARD: f64 = 1.75;
+
+/// Tangent planes in `count` directions around the hull of a view's edges, `contrast` +1 for a body darker than what is around it.
+///
+/// Left out are those that touch where the picture ends, and those that touch where no edge faces their way: the end of a curve
+/// whose rest is missing, or an edge of something else.
+pub(crate) fn tangents(
+    edges: &[EdgePoint],
+    hull: &[Point2],
+    view: &Fluoroscope,
+    contrast: f64,
+    count: usize,
+) -> Vec<Tangent> {
     let m = view.matrix();
+    let faces = |u: &Vector2, touched: &Point2| {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for e in edges.iter().filter(|e| (e.position - touched).norm_squared() < BESIDE.0 * BESIDE.0) {
+            let d = e.direction * contrast;
+            let angle = u.perp(&d).atan2(u.dot(&d));
+            if angle.abs() < BACKWARD {
+                (least, most) = (least.min(angle), most.max(angle));
+            }
+        }
+        least <= BESIDE.1 && most >= -BESIDE.1
+    };
     let tangent = |k: usize| {
         let turn = std::f64::consts::TAU * k as f64 / count as f64;
         let u = Vector2::new(turn.cos(), turn.sin());
         let touched = hull.iter().max_by(|a, b| u.dot(&a.coords).total_cmp(&u.dot(&b.coords)))?;
         let line = Vector3::new(u.x, u.y, -u.dot(&touched.coords));
         let normal = (m.transpose() * line).try_normalize(0.0)?;
-        view.on_image(touched, BORDER_PX).then_some(Tangent { normal, source: *view.source() })
+        let valid = view.on_image(touched, BORDER_PX) && faces(&u, touched);
+        valid.then_some(Tangent { normal, source: *view.source() })
     };
     (0..count).filter_map(tangent).collect()
 }
@@ -110,9 +136,19 @@ mod tests {
             Vector3::new(31.0, -60.0, 12.0),
         );
         let outline = biplane_phantom::ideal_outline(&ball, &pose, &a, 0.5);
-        let points = outline.iter().flat_map(|c| &c.points).map(|p| p.position).collect();
-        let planes = tangents(&hull(points), &view, 40);
+        let edges: Vec<EdgePoint> = outline.into_iter().flat_map(|c| c.points).collect();
+        let around = |edges: &[EdgePoint]| hull(edges.iter().map(|p| p.position).collect());
+        let planes = tangents(&edges, &around(&edges), &view, 1.0, 40);
         assert_eq!(planes.len(), 40);
+        assert!(tangents(&edges, &around(&edges), &view, -1.0, 40).is_empty());
+        // Half of the outline is missing: what its ends are touched by touches no ball.
+        let half: Vec<EdgePoint> = edges.into_iter().filter(|e| e.direction.x > 0.0).collect();
+        let left = tangents(&half, &around(&half), &view, 1.0, 40);
+        assert!(left.len() >= 19 && left.len() <= 25, "{}", left.len());
+        for plane in planes.iter().chain(&left) {
+            let outside = plane.normal.dot(&(plane.source - Point3::from(pose.translation())));
+            assert!((outside - 25.0).abs() < 1.2, "{outside}");
+        }
         for plane in planes {
             let outside = plane.normal.dot(&(plane.source - Point3::from(pose.translation())));
             assert!((outside - 25.0).abs() < 0.01, "{outside}");

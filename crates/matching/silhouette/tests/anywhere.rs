@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used)]
+
 //! Poses drawn at random over all rotations, ideal outlines of the phantom's solids: truth that shares nothing with this crate.
 
 use biplane_artifact::Curves;
@@ -33,7 +35,7 @@ fn places(body: Body, poses: usize, count: usize) -> Vec<Option<usize>> {
             let truth = random_pose(&mut random, &centroid);
             let curves = views.each_ref().map(|v| Curves(ideal_outline(body.solid(), &truth, v, 1.0)));
             let seen: Vec<_> = fluoroscopes.iter().zip(&curves).collect();
-            let found = library.starts(&seen, count);
+            let found = library.starts(&seen, 1.0, count);
             found.iter().position(|c| {
                 let error = c.pose.error_against(&truth, &centroid);
                 error.rotation_rad.to_degrees() < 10.0 && error.translation_mm < 5.0
