@@ -5,7 +5,7 @@
 //! the prediction does not know of. Robust weights (Geman and McClure) as in matching. Every unknown but the motion has a prior: where
 //! the outline does not tell it, that is what is answered.
 
-use nalgebra::{DMatrix, DVector, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 
 use crate::chords::Chords;
 use crate::profile::Profile;
@@ -99,69 +99,34 @@ impl Estimate {
         }
     }
 
+    /// What is left of each residual, px, and by how much the logarithms of attenuation and blur change it.
+    fn left(&self, samples: &[Sample]) -> Vec<Left> {
+        let of = |s: &Sample| {
+            let (bias, by_attenuation, by_blur) = s
+                .chords
+                .as_ref()
+                .map_or((0.0, 0.0, 0.0), |c| differentiated(c, self.attenuation_per_mm, self.blur_px));
+            let own = self.inset_px.get(s.view).copied().unwrap_or(0.0);
+            let px = s.residual_px + bias + own - s.motion.dot(&self.motion);
+            Left { px, by_attenuation, by_blur }
+        };
+        samples.iter().map(of).collect()
+    }
+
     fn step(&mut self, samples: &[Sample], prior: &Prior) -> Option<()> {
         let views = self.inset_px.len();
-        let unknowns = 8 + views;
-        // What is left of each residual, and by how much the logarithms of attenuation and blur change the prediction.
-        let left: Vec<(f64, f64, f64)> = samples
-            .iter()
-            .map(|s| {
-                let (bias, by_attenuation, by_blur) = s
-                    .chords
-                    .as_ref()
-                    .map_or((0.0, 0.0, 0.0), |c| differentiated(c, self.attenuation_per_mm, self.blur_px));
-                let own = self.inset_px.get(s.view).copied().unwrap_or(0.0);
-                (s.residual_px + bias + own - s.motion.dot(&self.motion), by_attenuation, by_blur)
-            })
-            .collect();
-        let mut sizes: Vec<f64> = left.iter().map(|l| l.0.abs()).collect();
-        if sizes.is_empty() {
-            return None;
+        let left = self.left(samples);
+        let sigma = spread(&left)?;
+        let mut normal = Normal::new(views);
+        for (s, l) in samples.iter().zip(&left) {
+            let weight = robust(sigma, l.px) * s.length_px / (prior.correlation_px * sigma * sigma);
+            normal.add(s, l, weight);
         }
-        let middle = sizes.len() / 2;
-        let median = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let sigma = (median / MEDIAN_SIZE).max(LEAST_SIGMA_PX);
-        let scale_squared = (2.5 * sigma).max(LEAST_SCALE_PX).powi(2);
-        let mut matrix = DMatrix::<f64>::zeros(unknowns, unknowns);
-        let mut vector = DVector::<f64>::zeros(unknowns);
-        for (s, &(e, by_attenuation, by_blur)) in samples.iter().zip(&left) {
-            let robust = (scale_squared / (scale_squared + e * e)).powi(2);
-            let weight = robust * s.length_px / (prior.correlation_px * sigma * sigma);
-            // Of what is left, by the unknowns; a view's inset is one of them.
-            let mut row = [0.0; 9];
-            row[..6].copy_from_slice((-s.motion).as_slice());
-            row[6..].copy_from_slice(&[by_attenuation, by_blur, 1.0]);
-            let place = |k: usize| if k < 8 { k } else { 8 + s.view };
-            for (k, a) in row.iter().enumerate() {
-                vector[place(k)] -= weight * a * e;
-                for (l, b) in row.iter().enumerate() {
-                    matrix[(place(k), place(l))] += weight * a * b;
-                }
-            }
-        }
-        // Priors, as further observations; what is held has none and no column.
-        let mut known = |k: usize, sigma: f64, off: f64| {
-            if sigma > 0.0 {
-                matrix[(k, k)] += 1.0 / (sigma * sigma);
-                vector[k] -= off / (sigma * sigma);
-            } else {
-                matrix.row_mut(k).fill(0.0);
-                matrix.column_mut(k).fill(0.0);
-                matrix[(k, k)] = 1.0;
-                vector[k] = 0.0;
-            }
-        };
         for k in 0..6 {
-            known(k, prior.motion_sigma[k], self.motion[k]);
+            normal.know(k, prior.motion_sigma[k], self.motion[k]);
         }
-        let off = (self.attenuation_per_mm / prior.attenuation_per_mm).ln();
-        known(6, prior.attenuation_ln_sigma, off);
-        // The blur's logarithm is moved, its size has the prior.
-        known(7, prior.blur_sigma_px / self.blur_px, (self.blur_px - prior.blur_px) / self.blur_px);
-        for view in 0..views {
-            known(8 + view, prior.inset_sigma_px, self.inset_px[view]);
-        }
-        let step = matrix.cholesky()?.solve(&vector);
+        self.know(&mut normal, prior);
+        let step = normal.matrix.cholesky()?.solve(&normal.vector);
         if !step.iter().all(|v| v.is_finite()) {
             return None;
         }
@@ -175,6 +140,122 @@ impl Estimate {
             *inset += step[8 + view];
         }
         Some(())
+    }
+
+    /// What is known of all but the motion.
+    fn know(&self, normal: &mut Normal, prior: &Prior) {
+        let off = (self.attenuation_per_mm / prior.attenuation_per_mm).ln();
+        normal.know(6, prior.attenuation_ln_sigma, off);
+        // The blur's logarithm is moved, its size has the prior.
+        let off = (self.blur_px - prior.blur_px) / self.blur_px;
+        normal.know(7, prior.blur_sigma_px / self.blur_px, off);
+        for (view, inset) in self.inset_px.iter().enumerate() {
+            normal.know(8 + view, prior.inset_sigma_px, *inset);
+        }
+    }
+
+    /// Covariance of the motion, with what is not known of attenuation, blur and insets in it: a sandwich, in which residuals within one
+    /// correlation length are one observation. None where a motion is not held by anything.
+    pub fn covariance(&self, samples: &[Sample], prior: &Prior) -> Option<Matrix6<f64>> {
+        let (views, left) = (self.inset_px.len(), self.left(samples));
+        let sigma = spread(&left)?;
+        // Sums of weight, of its square, of weighted and twice weighted squares, and of the slope of weight times residual.
+        let mut sums = [0.0; 5];
+        for (s, l) in samples.iter().zip(&left) {
+            let (w, squared) = (robust(sigma, l.px), l.px * l.px);
+            let far = squared / scale_squared(sigma);
+            let slope = w * (1.0 - 3.0 * far) / (1.0 + far);
+            for (sum, term) in sums.iter_mut().zip([w, w * w, w * squared, w * w * squared, slope]) {
+                *sum += s.length_px * term;
+            }
+        }
+        let (count, fitted) = (samples.len() as f64, 8.0 + views as f64);
+        let [weight, twice, squared, twice_squared, slope] = sums;
+        if weight <= 0.0 || slope <= 0.0 || count <= fitted {
+            return None;
+        }
+        let free = count / (count - fitted);
+        let variance = (squared / weight * free).max(LEAST_SIGMA_PX * LEAST_SIGMA_PX);
+        let [mut normal, mut noise] = [Normal::new(views), Normal::new(views)];
+        for (s, l) in samples.iter().zip(&left) {
+            let (w, share) = (robust(sigma, l.px), s.length_px / (prior.correlation_px * variance));
+            normal.add(s, l, w * share * slope / weight);
+            noise.add(s, l, w * w * share * (twice_squared / twice * free / variance));
+        }
+        self.know(&mut normal, prior);
+        self.know(&mut noise, prior);
+        let inverse = normal.matrix.cholesky()?.inverse();
+        let all = &inverse * noise.matrix * &inverse;
+        Some(Matrix6::from_fn(|i, j| all[(i, j)])).filter(|c| c.iter().all(|v| v.is_finite()))
+    }
+}
+
+/// What a residual leaves.
+struct Left {
+    px: f64,
+    by_attenuation: f64,
+    by_blur: f64,
+}
+
+/// Standard deviation by the median size, px; none of nothing.
+fn spread(left: &[Left]) -> Option<f64> {
+    let mut sizes: Vec<f64> = left.iter().map(|l| l.px.abs()).collect();
+    if sizes.is_empty() {
+        return None;
+    }
+    let middle = sizes.len() / 2;
+    let median = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+    Some((median / MEDIAN_SIZE).max(LEAST_SIGMA_PX))
+}
+
+/// Square of the robust weight's scale, px^2.
+fn scale_squared(sigma: f64) -> f64 {
+    (2.5 * sigma).max(LEAST_SCALE_PX).powi(2)
+}
+
+/// Geman and McClure's weight.
+fn robust(sigma: f64, px: f64) -> f64 {
+    let scale_squared = scale_squared(sigma);
+    (scale_squared / (scale_squared + px * px)).powi(2)
+}
+
+/// Normal equations: six of the motion, the logarithms of attenuation and blur, an inset a view.
+struct Normal {
+    matrix: DMatrix<f64>,
+    vector: DVector<f64>,
+}
+
+impl Normal {
+    fn new(views: usize) -> Self {
+        let count = 8 + views;
+        Self { matrix: DMatrix::zeros(count, count), vector: DVector::zeros(count) }
+    }
+
+    fn add(&mut self, sample: &Sample, left: &Left, weight: f64) {
+        // Of what is left, by the unknowns; a view's inset is one of them.
+        let mut row = [0.0; 9];
+        row[..6].copy_from_slice((-sample.motion).as_slice());
+        row[6..].copy_from_slice(&[left.by_attenuation, left.by_blur, 1.0]);
+        let place = |k: usize| if k < 8 { k } else { 8 + sample.view };
+        for (k, a) in row.iter().enumerate() {
+            self.vector[place(k)] -= weight * a * left.px;
+            for (l, b) in row.iter().enumerate() {
+                self.matrix[(place(k), place(l))] += weight * a * b;
+            }
+        }
+    }
+
+    /// A further observation of an unknown; one without deviation is held.
+    fn know(&mut self, k: usize, sigma: f64, off: f64) {
+        if sigma > 0.0 {
+            self.matrix[(k, k)] += 1.0 / (sigma * sigma);
+            self.vector[k] -= off / (sigma * sigma);
+        } else {
+            self.matrix.row_mut(k).fill(0.0);
+            self.matrix.column_mut(k).fill(0.0);
+            self.matrix[(k, k)] = 1.0;
+            self.vector[k] = 0.0;
+        }
     }
 }
 
@@ -223,7 +304,17 @@ mod tests {
 
     /// Two views of 400 samples each with edges where an attenuation and a blur put them, moved by a motion, a part of them wrong.
     fn samples(radii: [f64; 2], truth: (f64, f64), motion: &Vector6<f64>, wrong: f64) -> Vec<Sample> {
-        let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
+        samples_of(2, radii, truth, motion, wrong)
+    }
+
+    fn samples_of(
+        seed: u64,
+        radii: [f64; 2],
+        truth: (f64, f64),
+        motion: &Vector6<f64>,
+        wrong: f64,
+    ) -> Vec<Sample> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         (0..800)
             .map(|k| {
                 let radius = (random.random_range(radii[0].ln()..=radii[1].ln())).exp();
@@ -257,6 +348,25 @@ mod tests {
                 assert!(worst.fold(0.0, f64::max) < 0.03, "{truth:?} {wrong}: {found:?}");
             }
         }
+    }
+
+    #[test]
+    fn the_covariance_is_the_scatter_of_the_motion() {
+        // Each sample is an observation of its own here, and the noise is even between -0.05 and 0.05 px.
+        let prior = Prior { correlation_px: 4.0, ..prior() };
+        let (mut mean, mut count) = (0.0, 0.0);
+        for seed in 0..60 {
+            let samples = samples_of(seed, [0.5, 40.0], (0.3, 1.65), &Vector6::zeros(), 0.0);
+            let mut found = Estimate::of(&prior, 2);
+            for _ in 0..3 {
+                found.refine(&samples, &prior);
+            }
+            let covariance = found.covariance(&samples, &prior).unwrap();
+            mean += found.motion.dot(&(covariance.try_inverse().unwrap() * found.motion));
+            count += 1.0;
+        }
+        assert!((4.5..7.5).contains(&(mean / count)), "{}, where 6 would be right", mean / count);
+        assert_eq!(Estimate::of(&prior, 2).covariance(&[], &prior), None);
     }
 
     #[test]
