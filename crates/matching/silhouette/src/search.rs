@@ -16,12 +16,15 @@ use crate::tangent::Tangent;
 
 /// Spacing of the rotations, degrees.
 const SPACING_DEG: f64 = 10.0;
-/// Of the rotations so many of the best are looked at, and so many of them that are apart are refined.
-const KEPT: (usize, usize) = (600, 80);
+/// Of the rotations so many of the best are looked at, so many of them that are apart are refined roughly, and so many of those to
+/// the end.
+const KEPT: [usize; 3] = [600, 80, 32];
+/// With so many of the tangent planes rotations are scanned and refined roughly.
+const ROUGH_TANGENTS: usize = 40;
 /// How far apart seeds are, degrees.
 const SEED_APART_DEG: f64 = 12.0;
-/// Steps of a refinement.
-const STEPS: usize = 12;
+/// Steps of a refinement, rough and to the end.
+const STEPS: (usize, usize) = (4, 12);
 /// Refined poses nearer than this, degrees and mm, are one.
 const APART: (f64, f64) = (4.0, 4.0);
 
@@ -87,16 +90,11 @@ fn scan(
     rotations.iter().map(of).collect()
 }
 
-/// Gauss and Newton from a rotation.
-fn refine(
-    support: &Support,
-    tangents: &[Tangent],
-    about: &Point3,
-    rotation: UnitQuaternion<f64>,
-) -> Option<Fit> {
-    let mut pose = Pose::new(rotation, about.coords);
+/// Gauss and Newton from a pose of the centroid.
+fn refine(support: &Support, tangents: &[Tangent], start: &Pose, steps: usize) -> Option<Fit> {
+    let mut pose = *start;
     let mut misfit = f64::INFINITY;
-    for step in 0..=STEPS {
+    for step in 0..=steps {
         let r: Rotation3<f64> = pose.rotation().to_rotation_matrix();
         let (mut matrix, mut vector, mut squared) = (Matrix6::zeros(), Vector6::zeros(), 0.0);
         let centre = Point3::from(pose.translation());
@@ -113,7 +111,7 @@ fn refine(
         let now = (squared / tangents.len() as f64).sqrt();
         let settled = (misfit - now).abs() < 1e-3 * now;
         misfit = now;
-        if step == STEPS || settled {
+        if step == steps || settled {
             break;
         }
         // The rotation's damping, mm^2: it holds what turns the body and moves no tangent plane.
@@ -142,12 +140,14 @@ pub(crate) fn search(
     rotations: &[UnitQuaternion<f64>],
     count: usize,
 ) -> Vec<Fit> {
-    let misfits = scan(support, tangents, about, rotations);
+    let rough: Vec<Tangent> =
+        tangents.iter().step_by(tangents.len().div_ceil(ROUGH_TANGENTS).max(1)).copied().collect();
+    let misfits = scan(support, &rough, about, rotations);
     let mut order: Vec<u32> = (0..misfits.len() as u32).collect();
     let by = |a: &u32, b: &u32| misfits[*a as usize].total_cmp(&misfits[*b as usize]).then(a.cmp(b));
-    if order.len() > KEPT.0 {
-        order.select_nth_unstable_by(KEPT.0, by);
-        order.truncate(KEPT.0);
+    if order.len() > KEPT[0] {
+        order.select_nth_unstable_by(KEPT[0], by);
+        order.truncate(KEPT[0]);
     }
     order.sort_unstable_by(by);
     // The angle between two rotations is twice the arc of their quaternions' dot product.
@@ -155,13 +155,25 @@ pub(crate) fn search(
     let mut seeds: Vec<UnitQuaternion<f64>> = Vec::new();
     for k in order {
         let q = rotations[k as usize];
-        if seeds.len() < KEPT.1 && seeds.iter().all(|s| s.coords.dot(&q.coords).abs() < least) {
+        if seeds.len() < KEPT[1] && seeds.iter().all(|s| s.coords.dot(&q.coords).abs() < least) {
             seeds.push(q);
         }
     }
-    let mut fits: Vec<Fit> = seeds.into_iter().filter_map(|q| refine(support, tangents, about, q)).collect();
-    fits.sort_by(|a, b| a.misfit_mm.total_cmp(&b.misfit_mm));
+    let mut fits: Vec<Fit> = seeds
+        .into_iter()
+        .filter_map(|q| refine(support, &rough, &Pose::new(q, about.coords), STEPS.0))
+        .collect();
+    by_misfit(&mut fits);
+    let mut fits: Vec<Fit> = distinct(fits, KEPT[2])
+        .into_iter()
+        .filter_map(|f| refine(support, tangents, &Pose::new(f.rotation, f.centre.coords), STEPS.1))
+        .collect();
+    by_misfit(&mut fits);
     distinct(fits, count)
+}
+
+fn by_misfit(fits: &mut [Fit]) {
+    fits.sort_by(|a, b| a.misfit_mm.total_cmp(&b.misfit_mm));
 }
 
 /// The first of those that are one pose.
