@@ -245,11 +245,11 @@ The store, .biplane/ beside the pipeline file, keeps what was computed; deleting
   biplane convert results/calibration/fluoroscopes.json --view A --to mayacam2 --output A.txt
   biplane convert cam1.txt cam2.txt --to jointtrack-biplane --pixel-mm 0.3 --output both.txt")]
     Convert(ConvertArguments),
-    /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses to fill in.
+    /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses that may be filled in.
     #[command(
         after_help = "It looks for: folders of pictures side by side (one a fluoroscope), calibrations with the fluoroscope's
 name in theirs, meshes, distortion tables, tables of start poses. What it does not find, it says.
-No file is overwritten. Then: read pipeline.toml through, fill in starts.csv, `biplane plan`, `biplane run`."
+No file is overwritten. Then: read pipeline.toml through, `biplane plan`, `biplane run`."
     )]
     Init {
         /// The folder; the file is written there, unless there is one.

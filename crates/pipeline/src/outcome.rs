@@ -16,6 +16,8 @@ pub enum StartKind {
     File,
     /// Between given ones, or the nearest given one at the ends.
     Interpolated,
+    /// None was given: the body is looked for anywhere.
+    Anywhere,
 }
 
 impl StartKind {
@@ -25,6 +27,7 @@ impl StartKind {
             Self::Edit => "edit",
             Self::File => "file",
             Self::Interpolated => "interpolated",
+            Self::Anywhere => "anywhere",
         }
     }
 }
@@ -36,8 +39,8 @@ pub struct BodyOutcome {
     pub body: usize,
     /// Where its start came from.
     pub start: StartKind,
-    /// The start itself.
-    pub start_pose: Pose,
+    /// The start itself, if there is one.
+    pub start_pose: Option<Pose>,
     /// The match, or why there is none.
     pub result: Result<Match, String>,
     /// Its outline in each view, in the order of the trial's views; empty where there is no match.

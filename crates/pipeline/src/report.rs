@@ -38,6 +38,8 @@ struct Row {
     fit_px: String,
     share: String,
     sigma: Option<[String; 2]>,
+    /// Half-widths of 95 % intervals: of the place, of the rotation.
+    interval: Option<[String; 2]>,
     start: &'static str,
     look: String,
 }
@@ -77,6 +79,8 @@ struct TrialPart {
     name: String,
     views: Vec<String>,
     timed: bool,
+    /// Whether the calibration's uncertainty is in what is stated.
+    calibration_known: bool,
     explained: bool,
     outlined: bool,
     lines: Vec<Line>,
@@ -317,6 +321,7 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
                     .map(|m| [m.translation_sigma_mm(), m.rotation_sigma_rad().to_degrees()])
                     .filter(|sigma| sigma.iter().all(|s| *s < UNKNOWN))
                     .map(|sigma| sigma.map(|s| format!("{s:.3}"))),
+                interval: found.and_then(interval),
                 start: body.start.word(),
                 look: look(body, &views),
             });
@@ -332,6 +337,7 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
     TrialPart {
         name: recording.name.clone(),
         views,
+        calibration_known: outcome.calibration.uncertainties.get(trial).is_some_and(Option::is_some),
         timed: rows.iter().any(|r: &Row| !r.time.is_empty()),
         explained: rows.iter().any(|r| !r.reason.is_empty()),
         outlined: rows.iter().any(|r| !r.look.is_empty()),
@@ -339,6 +345,16 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
         rows,
         cards,
     }
+}
+
+/// Half-widths of the 95 % intervals along x, y, z, of the place (mm) and of the rotation (degrees).
+fn interval(found: &Match) -> Option<[String; 2]> {
+    let known = found.interval_95.iter().all(|w| *w < UNKNOWN);
+    let three = |from: usize, scale: f64| {
+        let of = found.interval_95[from..from + 3].iter().map(|w| format!("{:.2}", scale * w));
+        of.collect::<Vec<_>>().join(" / ")
+    };
+    known.then(|| [three(0, 1.0), three(3, 1.0_f64.to_degrees())])
 }
 
 /// Which views' outlines a person should look at, and which ones a person drew.
@@ -471,7 +487,7 @@ mod tests {
             bodies: vec![BodyOutcome {
                 body: 0,
                 start: StartKind::File,
-                start_pose: biplane_geometry::Pose::identity(),
+                start_pose: Some(biplane_geometry::Pose::identity()),
                 result: Err("a < b".into()),
                 contours: vec![],
             }],

@@ -264,7 +264,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         frame.outcome.bodies.push(BodyOutcome {
             body: *body,
             start: start.clone(),
-            start_pose: pose.0,
+            start_pose: pose.as_ref().map(|start| start.0),
             result,
             contours,
         });
@@ -617,7 +617,7 @@ mod tests {
     use super::*;
 
     fn body(result: Result<Match, String>) -> BodyOutcome {
-        let start_pose = biplane_geometry::Pose::identity();
+        let start_pose = Some(biplane_geometry::Pose::identity());
         BodyOutcome { body: 0, start: crate::outcome::StartKind::File, start_pose, result, contours: vec![] }
     }
 

@@ -397,7 +397,7 @@ impl Steps<'_> {
                 .map(|slot| self.calibrated.calibrations[self.view(job, slot).0].promise())
                 .collect(),
             model: self.model(*body)?.promise(),
-            start: start.promise(),
+            start: start.iter().map(Hashed::promise).collect(),
             calibration_uncertainty: self.uncertainty(job).iter().map(Hashed::promise).collect(),
         })
     }
@@ -415,7 +415,7 @@ impl Steps<'_> {
                     .map(|slot| self.calibrated.calibrations[self.view(job, slot).0].clone())
                     .collect(),
                 model: self.load_model(*body)?,
-                start: start.clone(),
+                start: start.iter().cloned().collect(),
                 calibration_uncertainty: self.uncertainty(job),
             })
         };

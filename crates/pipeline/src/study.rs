@@ -13,7 +13,7 @@ use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
 use biplane_label_surface::LabelSurfaceParams;
 use biplane_lofting::LoftParams;
-use biplane_optimisation::{MatchError, MatchParams};
+use biplane_optimisation::{MatchError, MatchParams, Method};
 use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentError, SegmentParams, TraceError, TraceParams};
 use biplane_slices::SlicesParams;
@@ -250,6 +250,11 @@ pub enum StudyError {
 }
 
 impl Study {
+    /// Whether a body without a start is looked for.
+    pub fn looks_anywhere(&self) -> bool {
+        self.matching.anywhere && self.matching.method == Method::Rim
+    }
+
     /// Where a person's own work is read from; a run never writes there.
     pub fn edits(&self) -> PathBuf {
         self.root.join("edits")
@@ -328,7 +333,7 @@ impl Study {
         if let Err(error) = file.matching.check() {
             let key = match &error {
                 MatchError::Parameter { name, .. } => Some(*name),
-                MatchError::Views { .. } | MatchError::Cancelled => None,
+                MatchError::Views { .. } | MatchError::NoStart | MatchError::Cancelled => None,
             };
             check.list.push(parameter(&text, "match", key, &error.to_string()));
         }

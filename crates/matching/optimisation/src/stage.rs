@@ -3,12 +3,15 @@
 use biplane_artifact::{Calibration, CalibrationUncertainty, Curves, Match, ModelMesh, Start, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
+use biplane_objective::{Body, DistanceField, Kind};
 use biplane_outline::RimMesh;
-use biplane_stage::{Context, Stage, inputs};
+use biplane_silhouette::SilhouetteLibrary;
+use biplane_stage::{Context, Hashed, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{answer_of, best_end, with_calibration};
+use crate::search::{SearchParams, match_search, mm_per_px, targets};
 use crate::{
     BinghamParams, BinghamView, EdgeField, Limits, RefineParams, Refined, View, judge, match_bingham,
     own_contour, refine, starts,
@@ -23,8 +26,8 @@ inputs! {
         calibrations: [Calibration],
         /// The body.
         model: ModelMesh,
-        /// Where to start.
-        start: Start,
+        /// Where to start; empty where nobody says: then starts are looked for anywhere.
+        start: [Start],
         /// How sure the calibrations are, all together; empty where nothing is known of it.
         calibration_uncertainty: [CalibrationUncertainty],
     }
@@ -48,16 +51,22 @@ pub enum Method {
     Rim,
     /// The thesis's own: outline on a grid, mean distance from the contour, bounded BFGS from ten starts.
     Bingham2006,
+    /// Any objective by any optimiser.
+    Search,
 }
 
 /// Steps of a descent with its last search radius at most; most need five to ten.
 const FINAL_STEPS: u32 = 30;
 
+/// Poses that are tried where a body is looked for anywhere.
+const CANDIDATES: usize = 16;
+
 /// How poses are searched and judged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MatchParams {
-    /// How poses are found: `"rim"`, or `"bingham2006"` for the thesis's own method, slower and less sure, to compare with.
+    /// How poses are found: `"rim"`; or, slower and less sure, to compare with: `"bingham2006"`, the thesis's own method, and `"search"`, any
+    /// objective by any optimiser (`[match.search]`).
     pub method: Method,
     /// How far from its start an outline looks for edges, px. As far as starts are wrong, and no farther.
     #[schemars(range(min = 1.0, max = 500.0))]
@@ -83,6 +92,9 @@ pub struct MatchParams {
     pub retry_deg: f64,
     /// Seed of the further starts.
     pub seed: u64,
+    /// Whether a body may be looked for anywhere, by the shapes of its shadows: where no start is given, and where none around the
+    /// given one leads to a good pose. Not with `method = "bingham2006"`, which needs a start.
+    pub anywhere: bool,
     /// A pose is good if at least this share of its outline finds an edge in each view. Right poses had 0.81 or more on the
     /// simulated and the real knee, wrong ones (from starts turned by 45 to 180 degrees) up to 0.82, but then an rms of
     /// 0.89 px: it takes both limits, and that of the rotation, to tell them apart.
@@ -101,6 +113,8 @@ pub struct MatchParams {
     pub good_sigma_deg: f64,
     /// Settings of the thesis's own method.
     pub bingham2006: BinghamParams,
+    /// Settings of a search by any objective and optimiser.
+    pub search: SearchParams,
 }
 
 impl Default for MatchParams {
@@ -116,6 +130,7 @@ impl Default for MatchParams {
             retry_mm: 4.0,
             retry_deg: 4.0,
             seed: 1,
+            anywhere: true,
             good_share: 0.75,
             failed_share: 0.5,
             good_rms_px: 0.75,
@@ -123,6 +138,7 @@ impl Default for MatchParams {
             good_sigma_mm: 0.5,
             good_sigma_deg: 0.75,
             bingham2006: BinghamParams::default(),
+            search: SearchParams::default(),
         }
     }
 }
@@ -150,6 +166,23 @@ pub enum MatchError {
         /// Calibrations.
         calibrations: usize,
     },
+    /// There is no start, and none may be looked for.
+    #[error(
+        "no start pose: give one in edits/poses.csv or in a table named by `starts` of the trial, or let bodies be looked for with \
+         [match] method = \"rim\" and anywhere = true"
+    )]
+    NoStart,
+    /// The optimiser cannot search the objective.
+    #[error(
+        "[match.search] optimiser = \"{optimiser}\" needs derivatives, which objective = \"{objective}\" has not: take another optimiser, or \
+         \"spline_rim\" for an objective"
+    )]
+    Optimiser {
+        /// The objective.
+        objective: &'static str,
+        /// The optimiser.
+        optimiser: &'static str,
+    },
     /// The run was stopped.
     #[error("stopped")]
     Cancelled,
@@ -170,6 +203,7 @@ impl MatchParams {
             retry_mm,
             retry_deg,
             seed: _,
+            anywhere: _,
             good_share,
             failed_share,
             good_rms_px,
@@ -177,6 +211,7 @@ impl MatchParams {
             good_sigma_mm,
             good_sigma_deg,
             bingham2006,
+            search,
         } = *self;
         let within = |name, value: f64, low: f64, high: f64, expected| {
             if (low..=high).contains(&value) {
@@ -199,7 +234,8 @@ impl MatchParams {
         within("failed_rms_px", failed_rms_px, good_rms_px, any, "at least good_rms_px")?;
         within("good_sigma_mm", good_sigma_mm, 0.0, any, "0 or more mm")?;
         within("good_sigma_deg", good_sigma_deg, 0.0, any, "0 or more degrees")?;
-        bingham2006.check()
+        bingham2006.check()?;
+        search.check()
     }
 
     /// How a descent searches.
@@ -226,7 +262,7 @@ impl MatchParams {
     }
 }
 
-/// Matches one body, seen in `views` named `names`, from `start`.
+/// Matches one body, seen in `views` named `names`, from `start`, and from starts around it while no match is good.
 ///
 /// # Errors
 /// Only [`MatchError::Cancelled`], when `cancelled` says so between two starts.
@@ -238,23 +274,70 @@ pub fn match_body(
     params: &MatchParams,
     cancelled: impl Fn() -> bool,
 ) -> Result<Match, MatchError> {
-    let search = params.search();
-    let limits = params.limits();
-    let sigma_rad = params.retry_deg.to_radians();
-    let others =
-        starts::around(start, mesh.centroid(), params.retry_mm, sigma_rad, params.seed, params.retries);
+    match_anywhere(mesh, views, names, Some(start), Vec::new, params, cancelled)
+}
+
+/// As [`match_body`]; where no match from around the start is good, or there is none, also from each of the poses that `anywhere` gives,
+/// and around the best of them.
+///
+/// # Errors
+/// [`MatchError::NoStart`] where there is neither a start nor a pose to begin with; [`MatchError::Cancelled`], when `cancelled` says so
+/// between two starts.
+pub fn match_anywhere(
+    mesh: &RimMesh,
+    views: &[View],
+    names: &[String],
+    start: Option<&Pose>,
+    anywhere: impl FnOnce() -> Vec<Pose>,
+    params: &MatchParams,
+    cancelled: impl Fn() -> bool,
+) -> Result<Match, MatchError> {
+    let (search, limits) = (params.search(), params.limits());
     let mut ends: Vec<Refined> = Vec::new();
-    for from in std::iter::once(*start).chain(others) {
+    let good = |ends: &[Refined]| best_end(ends).is_some_and(|e| judge(e, names, &limits).1 == Verdict::Good);
+    let descend = |from: &Pose, ends: &mut Vec<Refined>| {
         if cancelled() {
             return Err(MatchError::Cancelled);
         }
-        ends.push(refine(mesh, views, &from, &search));
-        if best_end(&ends).is_some_and(|end| judge(end, names, &limits).1 == Verdict::Good) {
-            break;
+        ends.push(refine(mesh, views, from, &search));
+        Ok(())
+    };
+    let near = |from: &Pose, ends: &mut Vec<Refined>| {
+        let sigma_rad = params.retry_deg.to_radians();
+        let (mm, seed) = (params.retry_mm, params.seed);
+        for other in starts::around(from, mesh.centroid(), mm, sigma_rad, seed, params.retries) {
+            if good(ends) {
+                break;
+            }
+            descend(&other, ends)?;
+        }
+        Ok(())
+    };
+    if let Some(start) = start {
+        descend(start, &mut ends)?;
+        near(start, &mut ends)?;
+    }
+    if !good(&ends) {
+        let before = ends.len();
+        for from in anywhere() {
+            descend(&from, &mut ends)?;
+        }
+        // All are tried, so that two places that cannot be told apart are seen; around the best of them as around a start.
+        if let Some(best) = best_end(&ends[before..]).map(|end| end.pose) {
+            near(&best, &mut ends)?;
         }
     }
     let steps = ends.iter().map(|end| end.steps).sum();
-    answer_of(&ends, mesh, names, &limits, steps).ok_or(MatchError::Cancelled)
+    answer_of(&ends, mesh, names, &limits, steps).ok_or(MatchError::NoStart)
+}
+
+/// Fluoroscope and edges of each view.
+pub(crate) fn views(inputs: &MatchInputs) -> Vec<View> {
+    let of = |(curves, calibration): (&Hashed<Curves>, &Hashed<Calibration>)| {
+        let fluoroscope = Fluoroscope::from(&**calibration);
+        View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
+    };
+    inputs.curves.iter().zip(&inputs.calibrations).map(of).collect()
 }
 
 /// The stage `match`.
@@ -276,36 +359,36 @@ impl Stage for MatchBody {
             return Err(MatchError::Views { curves, calibrations });
         }
         let mesh = context.prepared(inputs.model.hash(), || RimMesh::new(&inputs.model.0));
-        let views: Vec<View> = inputs
-            .curves
-            .iter()
-            .zip(&inputs.calibrations)
-            .map(|(curves, calibration)| {
-                let fluoroscope = Fluoroscope::from(&**calibration);
-                View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
-            })
-            .collect();
+        let views = views(inputs);
         let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
-        let start = &inputs.start.0;
+        let start = inputs.start.first().map(|start| &start.0);
         let found = match params.method {
-            Method::Rim => match_body(&mesh, &views, &names, start, params, || context.cancelled()),
+            Method::Rim => {
+                let anywhere = || candidates(inputs, &views, params, context);
+                match_anywhere(&mesh, &views, &names, start, anywhere, params, || context.cancelled())
+            }
             Method::Bingham2006 => {
-                let centre = start.transform(mesh.centroid());
+                let start = start.ok_or(MatchError::NoStart)?;
                 let contours: Vec<BinghamView> = inputs
                     .curves
                     .iter()
                     .zip(&views)
                     .map(|(curves, View { fluoroscope, .. })| {
                         let own = own_contour(curves, &mesh, fluoroscope, start, params);
-                        // Millimetres at the depth of the body where it starts; behind the source nothing is seen anyway.
-                        let mm_per_px =
-                            fluoroscope.project(&centre).map_or(1.0, |p| fluoroscope.mm_per_px(p.depth));
-                        BinghamView::new(fluoroscope.clone(), &own, mm_per_px)
+                        BinghamView::new(fluoroscope.clone(), &own, mm_per_px(fluoroscope, &mesh, start))
                     })
                     .collect();
                 let points = inputs.model.0.vertices();
                 let judged = (views.as_slice(), names.as_slice());
                 match_bingham(points, &contours, &mesh, judged, start, params, || context.cancelled())
+            }
+            Method::Search => {
+                let start = start.ok_or(MatchError::NoStart)?;
+                let field = || context.prepared(inputs.model.hash(), || DistanceField::new(&inputs.model.0));
+                let field = (params.search.objective == Kind::InversePoint).then(field);
+                let body = Body { mesh: &inputs.model.0, rim: &mesh, field };
+                let targets = targets(inputs, &mesh, &views, start, params);
+                match_search(&body, &targets, (&views, &names), start, params, || context.cancelled())
             }
         }?;
         Ok(match inputs.calibration_uncertainty.first() {
@@ -313,4 +396,19 @@ impl Stage for MatchBody {
             Some(uncertainty) => with_calibration(found, &mesh, &views, uncertainty, &params.search()),
         })
     }
+}
+
+/// Poses at which the body may be, by the shapes of its shadows, if it may be looked for.
+fn candidates(inputs: &MatchInputs, views: &[View], params: &MatchParams, context: &Context) -> Vec<Pose> {
+    if !params.anywhere {
+        return Vec::new();
+    }
+    let library = context.prepared(inputs.model.hash(), || SilhouetteLibrary::new(&inputs.model.0));
+    let shadows: Vec<(&Fluoroscope, &Curves)> =
+        views.iter().map(|v| &v.fluoroscope).zip(inputs.curves.iter().map(|c| &**c)).collect();
+    library
+        .starts(&shadows, params.search().contrast, CANDIDATES)
+        .into_iter()
+        .map(|candidate| candidate.pose)
+        .collect()
 }
