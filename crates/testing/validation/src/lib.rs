@@ -10,6 +10,7 @@ mod faults;
 mod goals;
 pub mod knee;
 pub mod lab;
+mod many_outlines;
 pub mod outcome;
 pub mod pictures;
 mod plates;

@@ -1,11 +1,11 @@
 //! How far off a start may be: the thesis's studies of initial poses and of the numbers of points (its section 5.1).
 
 use biplane_optimisation::BinghamParams;
-use biplane_phantom::{Body, TrueFluoroscope, biplane};
+use biplane_phantom::{Body, biplane};
 
 use super::SectionError;
-use crate::knee::Posture;
-use crate::lab::{Frames, thesis_params};
+use crate::lab::thesis_params;
+use crate::many_outlines::frames;
 use crate::outcome::{Method, Outcome, outcomes};
 use crate::plot::{Panel, Series, lines};
 use crate::{Cell, Column, Distribution, Lab, Row, Scene, Section, StartOffset, Table};
@@ -13,7 +13,7 @@ use crate::{Cell, Column, Distribution, Lab, Row, Scene, Section, StartOffset, T
 /// How far off starts are, mm and degrees.
 const DISTANCES: [f64; 6] = [2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
 /// Points of models; the thesis has 3,500, 15,000 and more than 20,000.
-const POINTS: [usize; 4] = [1_000, 3_500, 15_000, 36_000];
+const POINTS: [usize; 4] = [1_200, 3_500, 15_000, 36_000];
 /// Points of the outline that `bingham2006` compares; the thesis has 50.
 const OUTLINE_POINTS: [usize; 5] = [10, 25, 50, 100, 200];
 /// Where the numbers of points are varied, mm and degrees.
@@ -63,13 +63,6 @@ fn effort(lab: &Lab, method: Method) -> (usize, usize) {
     }
 }
 
-fn frames(lab: &Lab, body: Body, views: &[TrueFluoroscope]) -> Frames {
-    let postures: Vec<_> = (0..effort(lab, Method::Default).0)
-        .map(|k| (k.to_string(), Posture::random(lab.seed + 7, k)))
-        .collect();
-    lab.outlines(body, &postures, views)
-}
-
 fn matched(lab: &Lab, scene: &Scene, method: Method, thesis: &BinghamParams, distance: f64) -> Vec<Outcome> {
     let count = effort(lab, method).1;
     let starts = StartOffset { translation_mm: distance, rotation_deg: distance, count, seed: lab.seed };
@@ -95,7 +88,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut against_points: Vec<Series> = Vec::new();
     let mut against_distance: Vec<Series> = Vec::new();
     for (body, name) in BODIES {
-        let frames = frames(lab, body, &views);
+        let frames = frames(body, &views, lab.seed + 7, effort(lab, Method::Default).0);
         for method in Method::BOTH {
             // The thesis's method is slow, and a bone tells no more of it.
             if method == Method::Thesis && body == Body::DistalFemur {

@@ -9,8 +9,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::SectionError;
 use crate::faults::{cluttered, cut, noisy, random};
 use crate::goals::Goals;
-use crate::knee::Posture;
 use crate::lab::{Frames, calibrations, thesis_params};
+use crate::many_outlines::frames;
 use crate::outcome::{Method, Outcome, outcomes};
 use crate::plot::{Panel, Series, lines};
 use crate::scene::{Claim, Made, Origin};
@@ -81,10 +81,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut goals = Goals::default();
     let mut series: [Vec<Series>; 2] = Default::default();
     let poses = lab.count(400, 20);
-    let postures: Vec<_> = (0..poses).map(|k| (k.to_string(), Posture::random(lab.seed + 6, k))).collect();
     let near = StartOffset { translation_mm: 3.0, rotation_deg: 3.0, count: 1, seed: lab.seed };
     for (body, name) in BODIES {
-        let ideal = lab.outlines(body, &postures, &views);
+        let ideal = frames(body, &views, lab.seed + 6, poses);
         let mesh = lab.workshop.surface(body, POINTS)?;
         let mut at_95: [Vec<(f64, f64)>; 2] = Default::default();
         for share in MISSING {

@@ -2,34 +2,31 @@
 //!
 //! **Bound.** Each outline point is moved along its normal by independent noise of standard deviation `sigma`, so the information of an
 //! outline is `sum(j j') / sigma^2` with `j` the derivative of the contour's place along its normal by the six of the pose, and its
-//! inverse the least covariance (Cramer and Rao). `j` is taken from the analytic outlines, by central differences. Where an inset of
+//! inverse the least covariance (Cramer and Rao). `j` is that of the point of the analytic surface that the ray touches. Where an inset of
 //! the whole outline is solved for, it is a seventh unknown with `j = 1`, known beforehand to the deviation that the method assumes.
 
-use biplane_artifact::{Curves, Verdict};
-use biplane_geometry::{EdgePoint, Point3, Pose, Twist, Vector3};
+use biplane_artifact::Verdict;
+use biplane_geometry::{EdgePoint, Point3, Pose, Vector3};
 use biplane_optimisation::MatchParams;
-use biplane_phantom::{Body, TrueFluoroscope, biplane, ideal_outline};
+use biplane_phantom::{Body, TrueFluoroscope, biplane};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use super::SectionError;
 use crate::faults::{noisy, random};
 use crate::goals::Goals;
-use crate::knee::Posture;
-use crate::lab::{Frames, calibrations, thesis_params};
+use crate::lab::{calibrations, thesis_params};
+use crate::many_outlines::frames;
 use crate::outcome::{Method, Outcome, by_plane, outcomes};
 use crate::scene::{Claim, Made, Origin};
-use crate::true_outline::TrueOutline;
 use crate::{Cell, Column, Distribution, Lab, Row, Scene, Section, Spread, StartOffset, Table};
 
-/// Noise of each outline point, px: independent, the points 1 px apart.
+/// Noise of each outline point, px: independent, the points 1 px apart ([`frames`]).
 const NOISE_PX: f64 = 0.3;
-const STEP_PX: f64 = 1.0;
-/// Steps of the differences, mm and rad, and the distance of the points of the outlines that they are taken from, px.
-const DIFFERENCE: (f64, f64) = (0.1, 1.5e-3);
-const FINE_PX: f64 = 0.25;
-/// How far an outline that is moved by such a step is looked for, px.
-const REACH_PX: f64 = 2.0;
+/// Step of the differences of a projected point, in mm and rad.
+const DIFFERENCE: f64 = 1e-4;
+/// Shortest step along a ray, mm.
+const SHORTEST_STEP_MM: f64 = 0.2;
 /// In a basin that is not the truth's: in plane beyond this, mm, or turned by more than this, degrees.
 const ELSEWHERE: (f64, f64) = (1.0, 3.0);
 /// Goal for the length of the error in plane at 95 %, mm.
@@ -44,38 +41,76 @@ const POINTS: usize = 15_000;
 /// Least covariance: displacement along the view's x, y and normal (mm), rotation about them (rad), and the inset (px).
 type Bound = SMatrix<f64, 7, 7>;
 
-/// The bound at a pose, from `points` of its outline; `prior_px` of the inset, 0 where it is held. `None` where the outline does not
-/// determine the pose.
-fn bound(
+/// Derivatives by the six of the place along its normal of the contour at a point of the outline, px a mm and rad: those of the point of
+/// the body that the ray touches, held fixed to the body, since what else a rim point does runs along the contour.
+fn derivatives(
+    body: Body,
+    pose: &Pose,
+    centre: &Point3,
+    view: &TrueFluoroscope,
+    point: &EdgePoint,
+) -> Option<[f64; 6]> {
+    let touched = touched(body, pose, view, point);
+    let axes = [view.along_x, view.along_y, view.normal()];
+    let place = |by: Vector3| view.project(&(touched + by)).map(|p| p.0.coords.dot(&point.direction));
+    let mut derivatives = [0.0; 6];
+    for (k, derivative) in derivatives.iter_mut().enumerate() {
+        let axis = axes[k % 3];
+        let velocity = if k < 3 { axis } else { axis.cross(&(touched - centre)) };
+        *derivative = (place(velocity * DIFFERENCE)? - place(-velocity * DIFFERENCE)?) / (2.0 * DIFFERENCE);
+    }
+    Some(derivatives)
+}
+
+/// The point in the laboratory where the ray of an outline point is nearest to the body: it touches it there.
+fn touched(body: Body, pose: &Pose, view: &TrueFluoroscope, point: &EdgePoint) -> Point3 {
+    let (solid, back) = (body.solid(), pose.inverse());
+    let source = back.transform(&view.source);
+    let ray = (back.transform(&view.detector_point(&point.position)) - source).normalize();
+    let value = |at: f64| solid.value(&(source + ray * at));
+    let (low, high) = solid.bounds();
+    let (middle, radius) = (nalgebra::center(&low, &high), (high - low).norm() / 2.0);
+    let nearest = (middle - source).dot(&ray);
+    // The function grows by at most the distance, so no least value is stepped over by more than the shortest step.
+    let (mut at, mut best) = (nearest - radius, (f64::INFINITY, nearest));
+    while at < nearest + radius {
+        let here = value(at);
+        if here < best.0 {
+            best = (here, at);
+        }
+        at += here.max(SHORTEST_STEP_MM);
+    }
+    // Golden section.
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let (mut a, mut b) = (best.1 - SHORTEST_STEP_MM, best.1 + SHORTEST_STEP_MM);
+    while b - a > 1e-4 {
+        let (c, d) = (b - golden * (b - a), a + golden * (b - a));
+        if value(c) < value(d) { b = d } else { a = c }
+    }
+    pose.transform(&(source + ray * ((a + b) / 2.0)))
+}
+
+/// What the points of an outline tell of the pose and of the inset.
+fn information(
     body: Body,
     pose: &Pose,
     centroid: &Point3,
     view: &TrueFluoroscope,
     points: &[EdgePoint],
-    prior_px: f64,
-) -> Option<Bound> {
+) -> Bound {
     let centre = pose.transform(centroid);
-    let axes = [view.along_x, view.along_y, view.normal()];
-    let mut rows = vec![Some(SVector::<f64, 7>::repeat(1.0)); points.len()];
-    for k in 0..6 {
-        let step = if k < 3 { DIFFERENCE.0 } else { DIFFERENCE.1 };
-        let [ahead, behind] = [step, -step].map(|step| {
-            let by = |own: bool| if own { axes[k % 3] * step } else { Vector3::zeros() };
-            let moved = pose.moved(&Twist { translation: by(k < 3), rotation: by(k >= 3) }, &centre);
-            TrueOutline::new(ideal_outline(body.solid(), &moved, view, FINE_PX))
-        });
-        for (row, point) in rows.iter_mut().zip(points) {
-            let outside = |outline: &TrueOutline| outline.outside_px(&point.position, REACH_PX);
-            *row = row.and_then(|mut row| {
-                row[k] = (outside(&behind)? - outside(&ahead)?) / (2.0 * step);
-                Some(row)
-            });
-        }
-    }
     let mut information = Bound::zeros();
-    for row in rows.iter().flatten() {
+    for point in points {
+        let Some(d) = derivatives(body, pose, &centre, view, point) else { continue };
+        let row = SVector::<f64, 7>::from_fn(|i, _| d.get(i).copied().unwrap_or(1.0));
         information += row * row.transpose() / (NOISE_PX * NOISE_PX);
     }
+    information
+}
+
+/// The bound; `prior_px` of the inset, 0 where it is held. `None` where the outline does not determine the pose.
+fn bound(information: &Bound, prior_px: f64) -> Option<Bound> {
+    let mut information = *information;
     // An inset that is held is known without limit.
     information[(6, 6)] += 1.0 / prior_px.max(1e-6).powi(2);
     // Millimetres, radians and pixels: balanced first, lest the inverse lose its digits.
@@ -124,34 +159,31 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     for (body, name) in BODIES {
         let mesh = lab.workshop.surface(body, POINTS)?;
         let centroid = mesh.area_centroid();
-        let posed: Vec<(Pose, Curves)> = (0..poses)
-            .into_par_iter()
-            .map(|k| {
-                let pose = Posture::random(lab.seed + 8, k).pose(body);
-                (pose, Curves(ideal_outline(body.solid(), &pose, &view, STEP_PX)))
+        let posed = frames(body, std::slice::from_ref(&view), lab.seed + 8, poses);
+        let told: Vec<Bound> = posed
+            .par_iter()
+            .map(|(_, pose, curves)| {
+                let points: Vec<EdgePoint> =
+                    curves.iter().flat_map(|c| &c.0).flat_map(|c| &c.points).copied().collect();
+                information(body, pose, &centroid, &view, &points)
             })
             .collect();
         for inset_px in [0.0, MatchParams::default().inset_px] {
-            let bounds: Vec<Bound> = posed
-                .par_iter()
-                .filter_map(|(pose, curves)| {
-                    let points: Vec<EdgePoint> = curves.0.iter().flat_map(|c| &c.points).copied().collect();
-                    bound(body, pose, &centroid, &view, &points, inset_px)
-                })
-                .collect();
-            let frames: Frames = posed
+            let bounds: Vec<Bound> = told.iter().filter_map(|i| bound(i, inset_px)).collect();
+            let disturbed = posed
                 .iter()
                 .enumerate()
-                .map(|(k, (pose, curves))| {
+                .map(|(k, (label, pose, curves))| {
                     let mut chance = random(lab.seed, 70, k);
-                    (k.to_string(), *pose, vec![noisy(curves, NOISE_PX, 0.0, &mut chance)])
+                    let moved = curves.iter().map(|c| noisy(c, NOISE_PX, 0.0, &mut chance)).collect();
+                    (label.clone(), *pose, moved)
                 })
                 .collect();
             // Depth is loose in one view: that alone does not speak against a pose.
             let params = MatchParams { inset_px, good_sigma_mm: f64::MAX, ..MatchParams::default() };
             let made = Made { origin: Origin::Solid, claim: Claim::Accuracy, params };
             let views = std::slice::from_ref(&view);
-            let scene = Scene::made(made, &mesh, &calibrations(views), frames)?;
+            let scene = Scene::made(made, &mesh, &calibrations(views), disturbed)?;
             let draw = |truth: &_, centroid: &_, frame| near.draw(truth, centroid, frame);
             let all = outcomes(&scene, Method::Default, &thesis_params(), &draw);
             let there = |o: &Outcome| {
@@ -187,9 +219,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         text: vec![
             format!(
                 "`cargo xtask validate --only one-view --seed {}`: {poses} random poses a body, one start 3 mm and 3 degrees off each. Ideal \
-                 outlines from the analytic surfaces, points {STEP_PX} px apart, each moved along its normal by independent noise of {NOISE_PX} \
+                 outlines from the analytic surfaces, points 1 px apart, each moved along its normal by independent noise of {NOISE_PX} \
                  px. The bound is that of Cramer and Rao for this noise: no unbiased method that knows the true surface does better. It is \
-                 computed from the analytic outlines alone, by differences. Errors are of matches in the truth's basin, whatever their \
+                 computed from the analytic surfaces alone. Errors are of matches in the truth's basin, whatever their \
                  verdict; elsewhere is beyond {} mm in plane or {} degrees. As edges of X-ray pictures lie inside a smooth outline, the default \
                  solves for an inset in each view, and in one view that is told from depth by perspective alone: both ways are measured. \
                  Goals: {IN_PLANE_MM} mm in plane at 95 %; depth as good as geometry allows.",
@@ -205,23 +237,54 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::knee::Posture;
+    use crate::many_outlines::outline;
+    use crate::true_outline::TrueOutline;
+    use biplane_geometry::Twist;
+
+    /// A view, a body, a pose, and the points of its outline.
+    fn seen() -> (TrueFluoroscope, Body, Pose, Vec<EdgePoint>) {
+        let [view, _] = biplane(90.0);
+        let (body, pose) = (Body::FemoralComponent, Posture::flexed(40.0).pose(Body::FemoralComponent));
+        let outline = outline(body, &pose, &view, 1.0);
+        (view.clone(), body, pose, outline.iter().flat_map(|c| &c.points).copied().collect())
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences_of_the_outline() {
+        let (view, body, pose, points) = seen();
+        let centre = pose.transform(&Point3::origin());
+        let axes = [view.along_x, view.along_y, view.normal()];
+        for k in 0..6 {
+            let step = if k < 3 { 0.1 } else { 1.5e-3 };
+            let [ahead, behind] = [step, -step].map(|step| {
+                let by = |own: bool| if own { axes[k % 3] * step } else { Vector3::zeros() };
+                let moved = pose.moved(&Twist { translation: by(k < 3), rotation: by(k >= 3) }, &centre);
+                TrueOutline::new(outline(body, &moved, &view, 0.25))
+            });
+            let (mut off, mut all) = (0.0, 0.0);
+            for point in points.iter().step_by(7) {
+                let outside = |outline: &TrueOutline| outline.outside_px(&point.position, 2.0).unwrap();
+                let difference = (outside(&behind) - outside(&ahead)) / (2.0 * step);
+                let exact = derivatives(body, &pose, &centre, &view, point).unwrap()[k];
+                off += (difference - exact).powi(2);
+                all += exact * exact;
+            }
+            assert!(off < 1e-3 * all, "{k}: {off} of {all}");
+        }
+    }
 
     #[test]
     fn depth_is_bound_worse_than_plane_and_more_so_with_an_inset() {
-        let [view, _] = biplane(90.0);
-        let body = Body::FemoralComponent;
-        let pose = Posture::flexed(40.0).pose(body);
-        let outline = ideal_outline(body.solid(), &pose, &view, STEP_PX);
-        let points: Vec<EdgePoint> = outline.iter().flat_map(|c| &c.points).copied().collect();
-        let at = |prior| bound(body, &pose, &Point3::origin(), &view, &points, prior).unwrap();
-        let (held, free) = (deviations(&[at(0.0)]), deviations(&[at(1.0)]));
-        // Half the pixel's size at the body, over the root of some 700 points, and depth worse by about twice the distance over the size.
-        assert!((0.002..0.02).contains(&held[0]), "{held:?}");
-        assert!(held[1] > 5.0 * held[0] && held[1] < 0.5, "{held:?}");
-        assert!(free[1] > 1.5 * held[1], "{free:?} {held:?}");
+        let (view, body, pose, points) = seen();
+        let told = |points: &[EdgePoint]| information(body, &pose, &Point3::origin(), &view, points);
+        let all = told(&points);
+        let (held, free) =
+            (deviations(&[bound(&all, 0.0).unwrap()]), deviations(&[bound(&all, 1.0).unwrap()]));
+        assert!(held[1] > 5.0 * held[0] && free[1] > 1.5 * held[1], "{held:?} {free:?}");
         // Every second point tells half as much.
         let half: Vec<EdgePoint> = points.iter().step_by(2).copied().collect();
-        let fewer = deviations(&[bound(body, &pose, &Point3::origin(), &view, &half, 0.0).unwrap()]);
+        let fewer = deviations(&[bound(&told(&half), 0.0).unwrap()]);
         assert!((fewer[1] / held[1] - 2.0_f64.sqrt()).abs() < 0.1, "{fewer:?} {held:?}");
     }
 }

@@ -112,8 +112,8 @@ fn view((known, curves): (&View, &Curves)) -> View {
 fn columns() -> Vec<Column> {
     vec![
         Column::at_least("right", 0),
-        Column::at_most("mm, median", 4),
-        Column::at_most("degrees, median", 4),
+        Column::at_most("mm, median", 5),
+        Column::at_most("degrees, median", 5),
         Column::at_most("ms a start, median", 2),
         Column::at_most("mean", 2),
         Column::at_most("preparation of a mesh, s", 3),

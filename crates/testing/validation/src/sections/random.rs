@@ -1,11 +1,11 @@
 //! Ideal outlines, poses and starts drawn at random: how many starts end right, how near, and how that falls with the points of the model.
 
-use biplane_phantom::{Body, TrueFluoroscope, biplane};
+use biplane_phantom::{Body, biplane};
 
 use super::SectionError;
 use crate::goals::Goals;
-use crate::knee::Posture;
-use crate::lab::{Frames, thesis_params};
+use crate::lab::thesis_params;
+use crate::many_outlines::frames;
 use crate::outcome::{Method, Outcome, outcomes};
 use crate::plot::distributions;
 use crate::summary::cumulative_errors;
@@ -15,7 +15,7 @@ use crate::{Cell, Column, Distribution, Lab, Row, Section, StartOffset, Table, s
 const STARTS: usize = 10;
 /// Poses of the table of points, and the numbers of points there.
 const POSES_BY_POINTS: (usize, usize) = (100, 10);
-const POINTS: [usize; 4] = [1_000, 3_500, 15_000, 36_000];
+const POINTS: [usize; 4] = [1_200, 3_500, 15_000, 36_000];
 /// From where poses are found for sure: the table of points is about errors alone.
 const NEAR: StartOffset = StartOffset { translation_mm: 1.0, rotation_deg: 1.0, count: 1, seed: 1 };
 
@@ -64,11 +64,6 @@ fn order(points: &[(f64, f64)]) -> f64 {
     -over / under
 }
 
-fn frames(lab: &Lab, body: Body, views: &[TrueFluoroscope], count: usize) -> Frames {
-    let postures: Vec<_> = (0..count).map(|k| (k.to_string(), Posture::random(lab.seed + 5, k))).collect();
-    lab.outlines(body, &postures, views)
-}
-
 /// Measures it.
 pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let views = biplane(90.0);
@@ -105,7 +100,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut panels = [Vec::new(), Vec::new()];
     let poses = lab.count(1_000, 25);
     for Case { body, name, points, goal } in CASES {
-        let scene = lab.ideal(body, points, &views, frames(lab, body, &views, poses))?;
+        let scene = lab.ideal(body, points, &views, frames(body, &views, lab.seed + 5, poses))?;
         let draw = |truth: &_, centroid: &_, frame| set_a(truth, centroid, lab.seed, frame, STARTS);
         let all = outcomes(&scene, Method::Default, &thesis_params(), &draw);
         drop(scene);
@@ -141,7 +136,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
             panel.push(series);
         }
 
-        let few = frames(lab, body, &views, lab.count(POSES_BY_POINTS.0, POSES_BY_POINTS.1));
+        let few = frames(body, &views, lab.seed + 5, lab.count(POSES_BY_POINTS.0, POSES_BY_POINTS.1));
         let mut medians = [Vec::new(), Vec::new()];
         for points in POINTS {
             let scene = lab.ideal(body, points, &views, few.clone())?;
