@@ -1,6 +1,7 @@
 //! The sections of `docs/validation.md`, in its order: what `cargo xtask validate` measures.
 
 mod agreement;
+mod anywhere;
 mod capture;
 mod coverage;
 mod distortion;
@@ -42,6 +43,7 @@ pub const ALL: &[(&str, Measure)] = &[
     ("ideal", ideal::measure),
     ("random", random::measure),
     ("capture", capture::measure),
+    ("anywhere", anywhere::measure),
     ("peers", peers::measure),
     ("natural", natural::measure),
     ("spheres", spheres::measure),
