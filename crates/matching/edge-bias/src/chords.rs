@@ -39,7 +39,7 @@ impl Chords {
 }
 
 impl ChordFinder {
-    /// Chords of a closed surface from a rim point inward; none where it has no rim there. All in the frame of the surface:
+    /// Chords of a surface from a rim point inward; none where it has no rim or is open there. All in the frame of the surface:
     /// `inward` is by how much a point beside the rim point has to move, at its depth and parallel to the detector, to be seen one
     /// pixel farther inside.
     pub fn find(
@@ -95,6 +95,8 @@ impl ChordFinder {
         }
         let begin = begin.max(-RIM_PX);
         let mut lengths = [0.0; NODES];
+        // How often more a ray leaves than it enters.
+        let mut balance = [0.0; NODES];
         for piece in pieces.iter() {
             let (low, high) = ends(piece);
             if high <= begin {
@@ -114,10 +116,11 @@ impl ChordFinder {
                 let t = ((depth * a - b) / (db - depth * da)).clamp(0.0, 1.0);
                 let way = (ray + inward * depth).norm();
                 lengths[j - 1] += piece.sign * (a + t * da) * way;
+                balance[j - 1] += piece.sign;
             }
         }
-        // A surface that is wound inward has all its chords negative.
-        Some(Chords(lengths.map(f64::abs)))
+        // A surface that is wound inward has all its chords negative; an open one lets rays in and not out.
+        balance.iter().all(|b| *b == 0.0).then(|| Chords(lengths.map(f64::abs)))
     }
 }
 
@@ -195,5 +198,10 @@ mod tests {
         assert_eq!(finder.find(&surface, &SOURCE, &Point3::new(30.0, 0.0, 0.0), &inward), None);
         assert_eq!(finder.find(&surface, &SOURCE, &Point3::new(10.0, 0.0, 0.0), &Vector3::zeros()), None);
         assert_eq!(finder.find(&surface, &SOURCE, &SOURCE, &inward), None);
+        // Without its near face.
+        let whole = block(5.0);
+        let open = Mesh::new(whole.vertices().to_vec(), whole.triangles()[2..].to_vec()).unwrap();
+        let rim = Point3::new(10.0, 1.3, -10.0);
+        assert_eq!(finder.find(&Surface::new(&open), &SOURCE, &rim, &inward), None);
     }
 }

@@ -21,6 +21,7 @@
 //! verdict says what speaks against a pose, from the fit alone.
 
 mod answer;
+mod bias;
 mod bingham;
 mod consistency;
 mod judge;
@@ -30,6 +31,7 @@ mod stage;
 mod starts;
 
 pub use answer::with_calibration;
+pub use bias::{BiasParams, take_out};
 pub use bingham::{
     BinghamParams, BinghamView, Contour, Descent, best, descend, match_bingham, own_contour, spread,
 };
@@ -39,5 +41,5 @@ pub use judge::{Limits, judge};
 pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};
 pub use search::{Ended, SearchParams, Single, lowest};
 pub use stage::{
-    Contrast, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_anywhere, match_body,
+    Contrast, EdgeBias, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_anywhere, match_body,
 };

@@ -1,7 +1,7 @@
 //! A mesh laid out for finding its rim: face planes, and the faces beside each edge.
 
 use biplane_geometry::{Mesh, Point3};
-use biplane_surface::Edges;
+use biplane_surface::{Edges, Surface};
 
 /// A mesh with the adjacency that the rim needs. Made once a mesh, used for every pose.
 #[derive(Debug, Clone)]
@@ -14,6 +14,7 @@ pub struct RimMesh {
     pub(crate) sides: Vec<[u32; 2]>,
     /// All other edges: the surface ends there, or more than two faces meet.
     pub(crate) odd_edges: Vec<OddEdge>,
+    surface: Surface,
     centroid: Point3,
     radius_of_gyration: f64,
 }
@@ -86,9 +87,15 @@ impl RimMesh {
             ends,
             sides,
             odd_edges,
+            surface: Surface::new(mesh),
             centroid: mesh.area_centroid(),
             radius_of_gyration: mesh.radius_of_gyration(),
         }
+    }
+
+    /// The mesh's triangles, for searches in space.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
     }
 
     /// The mesh's area centroid, model coordinates, mm.

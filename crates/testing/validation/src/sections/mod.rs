@@ -2,6 +2,7 @@
 
 mod agreement;
 mod anywhere;
+mod bias;
 mod capture;
 mod coverage;
 mod distortion;
@@ -56,6 +57,7 @@ pub const ALL: &[(&str, Measure)] = &[
     ("models", models::measure),
     ("end-to-end", end_to_end::measure),
     ("budget", end_to_end::budget),
+    ("bias", bias::measure),
     ("sweeps", sweeps::measure),
     ("missing", missing::measure),
     ("coverage", coverage::measure),
