@@ -12,6 +12,7 @@ mod beam;
 mod check;
 mod closest;
 mod crossing;
+mod cut_end;
 mod distances;
 mod edges;
 mod farthest;
@@ -23,6 +24,7 @@ mod tree;
 
 pub use check::MeshCheck;
 pub use closest::Closest;
+pub use cut_end::cut_ends;
 pub use distances::{Spread, distances, spread_points};
 pub use edges::Edges;
 pub use farthest::{Farthest, farthest};
