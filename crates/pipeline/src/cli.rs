@@ -11,9 +11,13 @@ use std::process::ExitCode;
 
 use biplane_acquisition::inspect::InspectError;
 use biplane_artifact::AxesSource;
+use biplane_objective::Kind;
+use biplane_optimiser::Optimiser;
 use biplane_stage::{Clean, Context, Size, Store};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand};
 
+use crate::compare::{CompareError, CompareWish, compare};
 use crate::convert::{ConvertArguments, ConvertError, convert};
 use crate::correct::{By, CorrectError, correct};
 use crate::diagnostics::slashes;
@@ -189,6 +193,57 @@ The limits are in [doctor] of the pipeline file. Exit code 1 where one is not ke
         #[arg(long)]
         trial: Option<String>,
     },
+    /// Compare objectives and optimisers on the study: error or repeatability, share converged, calls and time, as the thesis's
+    /// Tables 5.1 and 5.2. Changes no result.
+    #[command(after_help = "Examples:
+  biplane compare                                     three frames of every trial, without known poses: repeatability
+  biplane compare --body femur --reference known.csv  errors against known poses (a table of poses, or 16 numbers a row)
+  biplane compare --objectives symmetric,inverse_point --optimisers sqp,powell --frames 0 --csv compare.csv
+
+Searches start where [match.search] of the pipeline file says, whatever the study's own method is.")]
+    Compare {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// Objectives, parted by commas; all of them if none is named.
+        #[arg(long, value_delimiter = ',', value_name = "NAME", value_parser = named(&Kind::ALL, Kind::name))]
+        objectives: Vec<Kind>,
+        /// Optimisers, parted by commas.
+        #[arg(
+            long,
+            value_delimiter = ',',
+            value_name = "NAME",
+            value_parser = named(&Optimiser::ALL, Optimiser::name),
+            default_value = "levenberg_marquardt,sqp,bfgs"
+        )]
+        optimisers: Vec<Optimiser>,
+        /// Leave out `method = "rim"` and `"bingham2006"`.
+        #[arg(long)]
+        no_presets: bool,
+        /// This trial alone.
+        #[arg(long)]
+        trial: Option<String>,
+        /// This body alone.
+        #[arg(long)]
+        body: Option<String>,
+        /// Frames of each trial, evenly over it; 0 for all.
+        #[arg(long, default_value_t = 3)]
+        frames: usize,
+        /// Starts of each frame, in place of those of [match.search].
+        #[arg(long)]
+        starts: Option<usize>,
+        /// Calls of each search, in place of those of [match.search].
+        #[arg(long)]
+        calls: Option<usize>,
+        /// Known poses: errors are told, and only of frames that have one.
+        #[arg(long, value_name = "CSV")]
+        reference: Option<PathBuf>,
+        /// Write the table as CSV too.
+        #[arg(long, value_name = "FILE")]
+        csv: Option<PathBuf>,
+        /// Threads; 0 is one for each core. With more than one, times are not to be relied on.
+        #[arg(long, default_value_t = 1)]
+        threads: usize,
+    },
     /// Show the results of the last run and the size of the store.
     #[command(
         after_help = "The fit is the root mean square distance of the outline from its edges, over all views.
@@ -357,6 +412,53 @@ fn obey(command: Command) -> Ended {
             print(&found.text);
             Ok(if found.well { End::Good } else { End::SomeFailed })
         }
+        Command::Compare {
+            pipeline,
+            objectives,
+            optimisers,
+            no_presets,
+            trial,
+            body,
+            frames,
+            starts,
+            calls,
+            reference,
+            csv,
+            threads,
+        } => {
+            let objectives = if objectives.is_empty() { Kind::ALL.to_vec() } else { objectives };
+            let presets = !no_presets;
+            let wish = CompareWish {
+                objectives,
+                optimisers,
+                presets,
+                trial,
+                body,
+                frames,
+                starts,
+                calls,
+                reference,
+                csv,
+                threads,
+            };
+            let context = Context::new();
+            stop_on_interrupt(&context);
+            let text = compare(load(&pipeline.file)?, &wish, &context).map_err(|error| {
+                let end = match &error {
+                    CompareError::Stopped { .. } => End::Stopped,
+                    CompareError::NoSuch { .. } | CompareError::Nothing(_) | CompareError::Parameters(_) => {
+                        End::BadConfiguration
+                    }
+                    CompareError::Store(_) | CompareError::Write { .. } | CompareError::Threads(_) => {
+                        End::Internal
+                    }
+                    _ => End::BadInput,
+                };
+                (end, error.to_string())
+            })?;
+            print(&text);
+            Ok(End::Good)
+        }
         Command::Status { pipeline } => status(&load(&pipeline.file)?),
         Command::Clean { pipeline, dry_run, all } => {
             let store = Store::open(&load(&pipeline.file)?.hidden()).map_err(internal)?;
@@ -435,6 +537,18 @@ fn obey(command: Command) -> Ended {
             Ok(End::Good)
         }
     }
+}
+
+/// Takes one of some names; a wrong one is answered with all of them.
+fn named<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let names = PossibleValuesParser::new(all.iter().map(|item| name(*item)));
+    names.try_map(move |given| {
+        let found = all.iter().find(|item| name(**item) == given);
+        found.copied().ok_or("not one of the names")
+    })
 }
 
 fn is_pipeline(file: &Path) -> bool {
@@ -636,7 +750,11 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     text += &models_lines(study, outcome);
     text += &to_look_at(study, outcome);
     let rows = good + doubtful + ambiguous + failed;
-    if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
+    if ambiguous > 0 {
+        text += "\nAn ambiguous pose fits no better than another one: put a pose near the right one into edits/poses.csv, rough is enough\n\
+                 (poses.csv has the other one in alternative_*), and run again.\n";
+    }
+    if outcome.failures.is_empty() && rows > 0 && (good + ambiguous == 0 || 2 * failed > rows) {
         text += "\nHardly a match is good. Check first: are the folders (or calibrations) of two views exchanged? Do the\n\
                  paired frames belong together (`offset`)? Are the start poses in the world of the calibration, of these\n\
                  meshes, in mm? Is a distortion table missing? The overlays show it.\n";

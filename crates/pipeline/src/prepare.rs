@@ -264,6 +264,7 @@ impl Prepared {
                     Err(none) => {
                         let other = match study.matching.method {
                             Method::Bingham2006 => "; `method = \"bingham2006\"` needs one",
+                            Method::Search => "; `method = \"search\"` needs one",
                             Method::Rim => ", or let the body be looked for: [match] anywhere = true",
                         };
                         faults.list.push(study.shorten(&format!("{none}{other}")));

@@ -402,23 +402,35 @@ impl Steps<'_> {
         })
     }
 
+    /// All that a body is matched by.
+    ///
+    /// # Errors
+    /// The curves or the mesh cannot be read any more.
+    pub fn match_inputs(
+        &self,
+        job: &Job,
+        place: usize,
+        curves: &[Stored<Curves>],
+    ) -> Result<MatchInputs, String> {
+        let (body, _, start) = &job.bodies[place];
+        Ok(MatchInputs {
+            curves: curves.iter().map(|c| read_stored(self.store, c)).collect::<Result<_, _>>()?,
+            calibrations: (0..curves.len())
+                .map(|slot| self.calibrated.calibrations[self.view(job, slot).0].clone())
+                .collect(),
+            model: self.load_model(*body)?,
+            start: start.iter().cloned().collect(),
+            calibration_uncertainty: self.uncertainty(job),
+        })
+    }
+
     /// Brings one body to its pose.
     ///
     /// # Errors
     /// The stage failed, or the store did.
     pub fn matching(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> Done<Hashed<Match>> {
-        let (body, _, start) = &job.bodies[place];
-        let load = || -> Result<MatchInputs, String> {
-            Ok(MatchInputs {
-                curves: curves.iter().map(|c| read_stored(self.store, c)).collect::<Result<_, _>>()?,
-                calibrations: (0..curves.len())
-                    .map(|slot| self.calibrated.calibrations[self.view(job, slot).0].clone())
-                    .collect(),
-                model: self.load_model(*body)?,
-                start: start.iter().cloned().collect(),
-                calibration_uncertainty: self.uncertainty(job),
-            })
-        };
+        let body = &job.bodies[place].0;
+        let load = || self.match_inputs(job, place, curves);
         let promised = self.match_promised(job, place, curves)?;
         let item = self.item(job, &self.prepared.study.bodies[*body].name);
         let done = self

@@ -333,6 +333,7 @@ impl Study {
         if let Err(error) = file.matching.check() {
             let key = match &error {
                 MatchError::Parameter { name, .. } => Some(*name),
+                MatchError::Optimiser { .. } => Some("search.optimiser"),
                 MatchError::Views { .. } | MatchError::NoStart | MatchError::Cancelled => None,
             };
             check.list.push(parameter(&text, "match", key, &error.to_string()));

@@ -40,6 +40,8 @@ use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Mesh, Pose};
 use biplane_optimiser::Row;
 use biplane_outline::RimMesh;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 pub use area::NonOverlap;
 pub use edges::EdgeDistance;
@@ -126,7 +128,8 @@ pub struct Settings {
 }
 
 /// The objectives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// Grid outline to spline.
     SplineGrid,

@@ -33,6 +33,8 @@ mod sqp;
 mod swarm;
 
 use nalgebra::Vector6;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use asked::Asked;
 
@@ -101,7 +103,8 @@ pub struct Minimum {
 }
 
 /// The optimisers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Optimiser {
     /// Bounded quasi-Newton with finite differences.
     Bfgs,
