@@ -10,31 +10,35 @@
 //!
 //! **Among other edges** ([`SilhouetteLibrary::among`]): silhouettes as few points with normals, from directions 10 degrees apart, are
 //! counted against edges of their direction at every place of every picture; what a view finds is held against the others depth by
-//! depth.
+//! depth, and the best settle on the nearest edges in a few steps.
 //!
-//! **Guaranteed:** the same candidates for the same curves; bodies with mirror basins have a candidate in each. **Not guaranteed:** that
-//! the right one is the first, or that it is nearer than about 15 degrees: a descent from each decides ([`descend`]).
+//! **Guaranteed:** the same candidates for the same curves; all that fit nearly as well as the best, mirror basins among them.
+//! **Not guaranteed:** that the right one is the first: a descent from each decides ([`descend`]).
 
 mod descend;
 mod octahedron;
+mod place;
 mod search;
+mod settle;
 mod support;
 mod tangent;
 mod template;
 mod vote;
 
 use biplane_artifact::Curves;
+use biplane_edge_field::EdgeField;
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{EdgePoint, Mesh, Point2, Point3, Pose, Vector3};
+use biplane_geometry::{Curve, EdgePoint, Mesh, Point2, Point3, Pose, Vector3};
 use nalgebra::{Matrix3, UnitQuaternion};
 
 pub use descend::descend;
 
-use search::Fit;
+use place::{Place, distinct};
+use settle::settle;
 use support::Support;
 use tangent::{Tangent, hull, middle, tangents};
 use template::Templates;
-use vote::{EdgeMaps, Found, vote};
+use vote::{EdgeMaps, misfit, vote};
 
 /// A pose to start from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +46,7 @@ pub struct Candidate {
     /// The pose.
     pub pose: Pose,
     /// How far the shadows are from the body at this pose, mm: root mean square distance of tangent planes where the body is alone,
-    /// else the mean distance of its silhouette from edges, of which none counts for more than about 30 px.
+    /// else the mean distance of its silhouette's points from edges, none of which counts for more than 6 px of 1024.
     pub misfit_mm: f64,
 }
 
@@ -63,6 +67,13 @@ const LEAST_TANGENTS: usize = 16;
 const ALONE: (f64, f64) = (0.6, 0.01);
 /// Candidates among other edges that are nearer than this, rad and mm, are one.
 const APART: (f64, f64) = (0.2, 12.0);
+/// Settled ones that are nearer than this, rad and mm, are one.
+const SAME: (f64, f64) = (0.08, 5.0);
+/// So many settle.
+const SETTLED: usize = 48;
+
+/// What fits worse than this many times the best candidate, and this many mm more, is none.
+const WORSE: (f64, f64) = (4.0, 0.5);
 
 /// One view: its edges in ideal pixels, and their hull.
 struct Seen<'a> {
@@ -100,23 +111,23 @@ impl SilhouetteLibrary {
     pub fn starts(&self, views: &[(&Fluoroscope, &Curves)], contrast: f64, count: usize) -> Vec<Candidate> {
         let seen: Vec<Seen> = views.iter().map(Seen::of).collect();
         let (alone, share) = self.alone(&seen, contrast, count);
-        let fits = |f: &Fit| share >= ALONE.0 && f.misfit_mm <= ALONE.1 * self.templates.radius;
+        let fits = |p: &Place| share >= ALONE.0 && p.misfit <= ALONE.1 * self.templates.radius;
         if alone.first().is_some_and(fits) {
-            return alone.iter().map(|f| self.candidate(f)).collect();
+            return self.candidates(&alone);
         }
-        self.voted(&seen, contrast, &alone, count)
+        self.candidates(&self.voted(&seen, contrast, alone, count))
     }
 
     /// At most `count` poses for curves that are the body's alone, or nearly all of it in each view; parts may be missing.
     pub fn isolated(&self, views: &[(&Fluoroscope, &Curves)], contrast: f64, count: usize) -> Vec<Candidate> {
         let seen: Vec<Seen> = views.iter().map(Seen::of).collect();
-        self.alone(&seen, contrast, count).0.iter().map(|f| self.candidate(f)).collect()
+        self.candidates(&self.alone(&seen, contrast, count).0)
     }
 
     /// At most `count` poses for curves of everything in the pictures.
     pub fn among(&self, views: &[(&Fluoroscope, &Curves)], contrast: f64, count: usize) -> Vec<Candidate> {
         let seen: Vec<Seen> = views.iter().map(Seen::of).collect();
-        self.voted(&seen, contrast, &[], count)
+        self.candidates(&self.voted(&seen, contrast, Vec::new(), count))
     }
 
     /// The body's area centroid, model coordinates, mm.
@@ -124,16 +135,15 @@ impl SilhouetteLibrary {
         &self.centroid
     }
 
-    fn pose(&self, rotation: UnitQuaternion<f64>, centre: &Point3) -> Pose {
-        Pose::new(rotation, centre.coords - rotation * self.centroid.coords)
-    }
-
-    fn candidate(&self, fit: &Fit) -> Candidate {
-        Candidate { pose: self.pose(fit.rotation, &fit.centre), misfit_mm: fit.misfit_mm }
+    fn candidates(&self, places: &[Place]) -> Vec<Candidate> {
+        let most = places.first().map_or(0.0, |p| WORSE.0 * p.misfit + WORSE.1);
+        let pose = |p: &Place| Pose::new(p.rotation, p.centre.coords - p.rotation * self.centroid.coords);
+        let likely = places.iter().filter(|p| p.misfit <= most);
+        likely.map(|p| Candidate { pose: pose(p), misfit_mm: p.misfit }).collect()
     }
 
     /// Poses that fit the hulls of all edges, and the share of tangents that were left to fit.
-    fn alone(&self, seen: &[Seen], contrast: f64, count: usize) -> (Vec<Fit>, f64) {
+    fn alone(&self, seen: &[Seen], contrast: f64, count: usize) -> (Vec<Place>, f64) {
         let planes: Vec<Tangent> =
             seen.iter().flat_map(|s| tangents(&s.edges, &s.hull, s.view, contrast, TANGENTS)).collect();
         let share = planes.len() as f64 / (TANGENTS * seen.len().max(1)) as f64;
@@ -142,32 +152,20 @@ impl SilhouetteLibrary {
         (fits.unwrap_or_default(), share)
     }
 
-    /// Poses that most silhouette points vote for, with further ones that are to be held against them.
-    fn voted(&self, seen: &[Seen], contrast: f64, further: &[Fit], count: usize) -> Vec<Candidate> {
+    /// Poses that most silhouette points vote for, settled, and `further` ones with them.
+    fn voted(&self, seen: &[Seen], contrast: f64, further: Vec<Place>, count: usize) -> Vec<Place> {
         let maps: Vec<EdgeMaps> = seen.iter().map(|s| EdgeMaps::new(s.view, &s.edges, contrast)).collect();
-        let rays: Vec<(Point3, Vector3)> = seen
-            .iter()
-            .filter_map(|s| {
-                Some((*s.view.source(), s.view.ray(&Point2::from(s.view.size().map(|n| n as f64 / 2.0)))?))
-            })
-            .collect();
+        let middle = |s: &Seen| Point2::from(s.view.size().map(|n| n as f64 / 2.0));
+        let rays: Vec<(Point3, Vector3)> =
+            seen.iter().filter_map(|s| Some((*s.view.source(), s.view.ray(&middle(s))?))).collect();
         let mut found = vote(&maps, &self.templates, meeting(&rays).as_ref());
-        found.extend(further.iter().map(|f| Found::at(&maps, &self.templates, f.rotation, f.centre)));
-        found.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let mut kept: Vec<Found> = Vec::new();
-        for f in found {
-            let apart = |k: &Found| {
-                k.rotation.angle_to(&f.rotation) > APART.0 || (k.centre - f.centre).norm() > APART.1
-            };
-            if kept.len() < count && kept.iter().all(apart) {
-                kept.push(f);
-            }
-        }
-        let candidate = |f: Found| Candidate {
-            pose: self.pose(f.rotation, &f.centre),
-            misfit_mm: vote::misfit_mm(&maps, &f),
-        };
-        kept.into_iter().map(candidate).collect()
+        found.extend(further.into_iter().map(|p| Place { misfit: misfit(&maps, &self.templates, &p), ..p }));
+        let field =
+            |s: &Seen| EdgeField::new(&Curves(vec![Curve { points: s.edges.clone(), closed: false }]), None);
+        let fields: Vec<EdgeField> = seen.iter().map(field).collect();
+        let rough = distinct(found, APART, SETTLED);
+        let settled = rough.iter().map(|p| settle(&maps, &fields, &self.templates, p)).collect();
+        distinct(settled, SAME, count)
     }
 
     /// A point near the body: where the rays through the shadows' middles meet; for one view by the shadow's size.

@@ -11,6 +11,7 @@
 use biplane_geometry::{Point3, Pose, Twist, Vector3};
 use nalgebra::{Matrix3, Matrix6, Rotation3, UnitQuaternion, Vector6};
 
+use crate::place::{Place, distinct};
 use crate::support::Support;
 use crate::tangent::Tangent;
 
@@ -25,18 +26,8 @@ const ROUGH_TANGENTS: usize = 40;
 const SEED_APART_DEG: f64 = 12.0;
 /// Steps of a refinement, rough and to the end.
 const STEPS: (usize, usize) = (4, 12);
-/// Refined poses nearer than this, degrees and mm, are one.
-const APART: (f64, f64) = (4.0, 4.0);
-
-/// A pose about the centroid, and how well it fits.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fit {
-    pub rotation: UnitQuaternion<f64>,
-    /// Where the body's centroid is, mm.
-    pub centre: Point3,
-    /// Root mean square distance of the tangent planes from the body, mm.
-    pub misfit_mm: f64,
-}
+/// Refined poses nearer than this, rad and mm, are one.
+const APART: (f64, f64) = (0.07, 4.0);
 
 /// Rotations that turn +z to directions spread evenly, on a spiral (Saff and Kuijlaars 1997).
 pub(crate) fn directions() -> Vec<UnitQuaternion<f64>> {
@@ -91,7 +82,7 @@ fn scan(
 }
 
 /// Gauss and Newton from a pose of the centroid.
-fn refine(support: &Support, tangents: &[Tangent], start: &Pose, steps: usize) -> Option<Fit> {
+fn refine(support: &Support, tangents: &[Tangent], start: &Pose, steps: usize) -> Option<Place> {
     let mut pose = *start;
     let mut misfit = f64::INFINITY;
     for step in 0..=steps {
@@ -124,22 +115,19 @@ fn refine(support: &Support, tangents: &[Tangent], start: &Pose, steps: usize) -
             Twist { translation: solved.fixed_rows::<3>(0).into_owned(), rotation: rotation * shorten };
         pose = pose.moved(&twist, &centre);
     }
-    let centre = Point3::from(pose.translation());
-    (misfit.is_finite() && centre.coords.iter().all(|v| v.is_finite())).then_some(Fit {
-        rotation: pose.rotation(),
-        centre,
-        misfit_mm: misfit,
-    })
+    let place = Place::of(&pose, misfit);
+    (misfit.is_finite() && place.centre.coords.iter().all(|v| v.is_finite())).then_some(place)
 }
 
-/// The poses at which the tangent planes touch the body best, the best first, none near a better one. `about` is near the body.
+/// The poses at which the tangent planes touch the body best, the best first, none near a better one; a misfit is the root mean square
+/// distance of the planes from the body, mm. `about` is near the body.
 pub(crate) fn search(
     support: &Support,
     tangents: &[Tangent],
     about: &Point3,
     rotations: &[UnitQuaternion<f64>],
     count: usize,
-) -> Vec<Fit> {
+) -> Vec<Place> {
     let rough: Vec<Tangent> =
         tangents.iter().step_by(tangents.len().div_ceil(ROUGH_TANGENTS).max(1)).copied().collect();
     let misfits = scan(support, &rough, about, rotations);
@@ -159,34 +147,9 @@ pub(crate) fn search(
             seeds.push(q);
         }
     }
-    let mut fits: Vec<Fit> = seeds
-        .into_iter()
-        .filter_map(|q| refine(support, &rough, &Pose::new(q, about.coords), STEPS.0))
-        .collect();
-    by_misfit(&mut fits);
-    let mut fits: Vec<Fit> = distinct(fits, KEPT[2])
-        .into_iter()
-        .filter_map(|f| refine(support, tangents, &Pose::new(f.rotation, f.centre.coords), STEPS.1))
-        .collect();
-    by_misfit(&mut fits);
-    distinct(fits, count)
-}
-
-fn by_misfit(fits: &mut [Fit]) {
-    fits.sort_by(|a, b| a.misfit_mm.total_cmp(&b.misfit_mm));
-}
-
-/// The first of those that are one pose.
-pub(crate) fn distinct(fits: Vec<Fit>, count: usize) -> Vec<Fit> {
-    let mut kept: Vec<Fit> = Vec::new();
-    for fit in fits {
-        let apart = |k: &Fit| {
-            k.rotation.angle_to(&fit.rotation) > APART.0.to_radians()
-                || (k.centre - fit.centre).norm() > APART.1
-        };
-        if kept.len() < count && kept.iter().all(apart) {
-            kept.push(fit);
-        }
-    }
-    kept
+    let roughly =
+        seeds.into_iter().filter_map(|q| refine(support, &rough, &Pose::new(q, about.coords), STEPS.0));
+    let best = distinct(roughly.collect(), APART, KEPT[2]);
+    let fully = best.iter().filter_map(|p| refine(support, tangents, &p.pose(), STEPS.1));
+    distinct(fully.collect(), APART, count)
 }

@@ -19,6 +19,8 @@ const AWAY: f64 = 15.0;
 pub(crate) struct TemplatePoint {
     pub place: [f32; 2],
     pub turn: f32,
+    /// On the body about its centroid, model coordinates, mm.
+    pub point: nalgebra::Vector3<f32>,
 }
 
 /// Silhouettes from all directions.
@@ -61,7 +63,7 @@ impl Templates {
                     &view,
                     Sampling { step_px: 2.0 },
                 );
-                sampled(&outline)
+                sampled(&outline, q)
             })
             .collect();
         let looks: Vec<Vector3> = turned.iter().map(|q| q.inverse() * Vector3::z()).collect();
@@ -90,7 +92,7 @@ impl Templates {
 }
 
 /// `POINTS` points evenly along an outline.
-fn sampled(outline: &Outline) -> Vec<TemplatePoint> {
+fn sampled(outline: &Outline, turned: &UnitQuaternion<f64>) -> Vec<TemplatePoint> {
     let step = outline.length_px() / POINTS as f64;
     let (mut points, mut passed) = (Vec::with_capacity(POINTS), 0.0);
     for p in outline.points() {
@@ -98,6 +100,8 @@ fn sampled(outline: &Outline) -> Vec<TemplatePoint> {
         if passed >= (points.len() as f64 + 0.5) * step && points.len() < POINTS {
             points.push(TemplatePoint {
                 place: [p.pixel.x as f32, p.pixel.y as f32],
+                // The centroid stands at the origin.
+                point: (turned.inverse() * p.world.coords).cast(),
                 turn: (p.normal.y.atan2(p.normal.x) / std::f64::consts::TAU) as f32,
             });
         }

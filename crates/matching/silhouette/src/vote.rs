@@ -11,6 +11,7 @@ use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{EdgePoint, Point2, Point3, Vector2, Vector3};
 use nalgebra::{Matrix2, Matrix3, Rotation3, UnitQuaternion};
 
+use crate::place::Place;
 use crate::template::{TemplatePoint, Templates};
 
 /// Directions of edges that are told apart.
@@ -87,6 +88,16 @@ impl<'a> EdgeMaps<'a> {
         }
         distances.iter_mut().for_each(|d| chamfer(d));
         Self { view, cell_px, masks, distances, contrast }
+    }
+
+    /// +1 for a body darker than what is around it.
+    pub fn contrast(&self) -> f64 {
+        self.contrast
+    }
+
+    /// Side of a cell of the masks, px.
+    pub fn cell_px(&self) -> f64 {
+        self.cell_px
     }
 
     /// How well the silhouette of a body with its centroid at `point`, turned by `rotation`, lies on edges of its direction: 0 to 1,
@@ -173,7 +184,7 @@ impl Local {
 }
 
 /// A template laid on a picture.
-struct Laid {
+pub(crate) struct Laid {
     place: nalgebra::Matrix2<f32>,
     /// Turns of a template's normals: sign and offset. What is around a point is seen turned and perhaps mirrored, hardly skewed.
     sign: f32,
@@ -182,7 +193,7 @@ struct Laid {
 
 impl Laid {
     /// Turned by an angle with cosine `c` and sine `s`.
-    fn new(local: &Local, c: f64, s: f64, contrast: f64) -> Self {
+    pub fn new(local: &Local, c: f64, s: f64, contrast: f64) -> Self {
         let place = local.to_px * Matrix2::new(c, -s, s, c);
         let x: Vector2 = place.column(0) * contrast;
         Self { place: place.cast(), sign: place.determinant().signum() as f32, offset: turn(&x) }
@@ -194,7 +205,7 @@ impl Laid {
     }
 
     /// Where the edge below a point runs from dark to bright, turns.
-    fn turn(&self, p: &TemplatePoint) -> f32 {
+    pub fn turn(&self, p: &TemplatePoint) -> f32 {
         self.offset + self.sign * p.turn
     }
 }
@@ -261,26 +272,9 @@ fn best_place(maps: &EdgeMaps, points: &[TemplatePoint], laid: &Laid) -> Option<
     (count > 0).then(|| (count, [places[y].trailing_zeros(), y as u32]))
 }
 
-/// A pose of the centroid, and how well it stands in all views.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
-    pub rotation: UnitQuaternion<f64>,
-    pub centre: Point3,
-    /// Mean over the silhouette's points of how near an edge of their direction is, 0 to 1.
-    pub score: f64,
-}
-
-impl Found {
-    /// A pose as it stands.
-    pub fn at(
-        maps: &[EdgeMaps],
-        templates: &Templates,
-        rotation: UnitQuaternion<f64>,
-        centre: Point3,
-    ) -> Self {
-        let matrix = rotation.to_rotation_matrix();
-        Self { rotation, centre, score: mean_score(maps, templates, matrix.matrix(), &centre, 1) }
-    }
+/// How badly a silhouette stands at a place: 1 less the mean over its points of how near an edge of their direction is, 0 to 1.
+pub(crate) fn misfit(maps: &[EdgeMaps], templates: &Templates, place: &Place) -> f64 {
+    1.0 - mean_score(maps, templates, place.rotation.to_rotation_matrix().matrix(), &place.centre, 1)
 }
 
 fn mean_score(
@@ -294,19 +288,10 @@ fn mean_score(
     sum / maps.len().max(1) as f64
 }
 
-/// Mean distance of a found pose's silhouette from edges, mm, each counted up to the largest that is told apart.
-pub(crate) fn misfit_mm(maps: &[EdgeMaps], found: &Found) -> f64 {
-    let far_mm = |m: &EdgeMaps| {
-        let depth = m.view.project(&found.centre).map_or(0.0, |p| p.depth);
-        m.view.mm_per_px(depth) * m.cell_px / FINER as f64 * f64::from(FAR) / 3.0
-    };
-    (1.0 - found.score) * maps.iter().map(far_mm).sum::<f64>() / maps.len().max(1) as f64
-}
-
-/// Poses whose silhouettes lie on edges of their direction in all views, in no order. `near` is where the views look; for one view
+/// Places at which silhouettes lie on edges of their direction in all views, with their [`misfit`], in no order. `near` is where the views look; for one view
 /// alone the depth is sought where the body is as large as bodies are in pictures.
-pub(crate) fn vote(maps: &[EdgeMaps], templates: &Templates, near: Option<&Point3>) -> Vec<Found> {
-    let mut found: Vec<Found> = Vec::new();
+pub(crate) fn vote(maps: &[EdgeMaps], templates: &Templates, near: Option<&Point3>) -> Vec<Place> {
+    let mut found: Vec<Place> = Vec::new();
     for map in maps {
         let mut hits = Vec::new();
         match near {
@@ -338,7 +323,7 @@ const RAY_STEPS: (i32, i32) = (21, 12);
 const ROUGH: usize = 3;
 
 /// A hit at the depth along its ray where it stands best in all views.
-fn along_the_ray(maps: &[EdgeMaps], map: &EdgeMaps, templates: &Templates, hit: &Hit) -> Option<Found> {
+fn along_the_ray(maps: &[EdgeMaps], map: &EdgeMaps, templates: &Templates, hit: &Hit) -> Option<Place> {
     let pixel = Point2::from(hit.cell.map(|c| (f64::from(c) + 0.5) * map.cell_px));
     let ray: Vector3 = map.view.ray(&pixel)?;
     let local = Local::of(map.view, &(map.view.source() + ray * hit.away))?;
@@ -355,5 +340,5 @@ fn along_the_ray(maps: &[EdgeMaps], map: &EdgeMaps, templates: &Templates, hit: 
     let steps = if maps.len() > 1 { RAY_STEPS.0 } else { RAY_STEPS.1 };
     let (rough, _) = best(&mut (-steps..=steps).step_by(ROUGH), ROUGH)?;
     let (k, score) = best(&mut (rough - 1..=rough + 1), 1)?;
-    Some(Found { rotation, centre: at(k), score })
+    Some(Place { rotation, centre: at(k), misfit: 1.0 - score })
 }

@@ -28,7 +28,7 @@ const CANDIDATES: usize = 20;
 /// A candidate within these, degrees and mm, is in the right basin.
 const BASIN: (f64, f64) = (15.0, 12.0);
 /// A descent this good ends the search among candidates that fit worse.
-const ENOUGH: f64 = 0.9;
+const ENOUGH: f64 = 0.75;
 /// Distance of the points of ideal outlines, px.
 const STEP_PX: f64 = 1.0;
 /// How far from the laboratory's origin the centroid may be along each axis, mm.
