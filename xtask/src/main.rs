@@ -1,7 +1,7 @@
 //! `cargo xtask COMMAND`: thin, calls the crates.
 //!
 //! `cargo xtask run pipeline.toml` is `biplane run pipeline.toml`, and every other command of the program passes through
-//! too. What only the project itself needs is here: `validate`, `compare` and `starts`.
+//! too. What only the project itself needs is here: `validate`, `accuracy` and `starts`.
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -42,8 +42,8 @@ enum Task {
         #[arg(long, default_value_t = SEED)]
         seed: u64,
     },
-    /// Compare a study's results/poses.csv with known poses; fails beyond the limits.
-    Compare {
+    /// Hold a study's results/poses.csv against known poses; fails beyond the limits.
+    Accuracy {
         /// The study.
         pipeline: PathBuf,
         /// The body.
@@ -127,15 +127,15 @@ fn section_names() -> clap::builder::PossibleValuesParser {
 
 fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let own = ["validate", "compare", "relative", "picture", "starts"];
+    let own = ["validate", "accuracy", "relative", "picture", "starts"];
     if !arguments.get(1).is_some_and(|a| own.iter().any(|o| a == o)) {
         let passed = arguments.into_iter().skip(1);
         return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
     }
     let done = match Arguments::parse().task {
         Task::Validate { quick, only, seed } => validate(quick, &only, seed),
-        Task::Compare { pipeline, body, reference, limit_mm, limit_deg } => {
-            compare(&pipeline, &body, &reference, limit_mm, limit_deg)
+        Task::Accuracy { pipeline, body, reference, limit_mm, limit_deg } => {
+            accuracy(&pipeline, &body, &reference, limit_mm, limit_deg)
         }
         Task::Relative { pipeline, body, seen_from, reference, frames } => {
             relative(&pipeline, &body, &seen_from, &reference, &frames)
@@ -212,7 +212,7 @@ fn validate(quick: bool, only: &[String], seed: u64) -> Result<bool, Box<dyn Err
     Ok(beyond.is_empty())
 }
 
-fn compare(
+fn accuracy(
     pipeline: &Path,
     body: &str,
     reference: &Path,

@@ -17,9 +17,10 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope", "biplane-grey", "biplane-phantom", "biplane-spline"],
+    &["biplane-fluoroscope", "biplane-grey", "biplane-optimiser", "biplane-phantom", "biplane-spline"],
     &["biplane-surface"],
-    &["biplane-edge-field", "biplane-outline"],
+    &["biplane-edge-bias", "biplane-edge-field", "biplane-outline"],
+    &["biplane-objective", "biplane-silhouette"],
     &[
         "biplane-acquisition",
         "biplane-spots",
@@ -43,7 +44,7 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 20] = [
+const METHOD: [&str; 24] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
@@ -59,10 +60,14 @@ const METHOD: [&str; 20] = [
     "crates/analysis/spline",
     "crates/analysis/spots",
     "crates/matching/contour",
+    "crates/matching/edge-bias",
     "crates/matching/edge-field",
     "crates/matching/fluoroscope",
+    "crates/matching/objective",
+    "crates/matching/optimiser",
     "crates/matching/outline",
     "crates/matching/optimisation",
+    "crates/matching/silhouette",
     "crates/testing/phantom",
 ];
 

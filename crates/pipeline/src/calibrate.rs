@@ -7,9 +7,12 @@
 use std::path::{Path, PathBuf};
 
 use biplane_acquisition::images::read_frame;
-use biplane_artifact::{Calibration, Content, Detector, Environment, Picture, PlateFit, Spots, Verdict};
+use biplane_artifact::{
+    Calibration, CalibrationUncertainty, Content, Detector, Environment, Picture, PlateFit, Spots, Verdict,
+};
 use biplane_distortion::{DistortionInputs, FitDistortion};
 use biplane_environment::{EnvironmentInputs, EnvironmentParams, FindEnvironment};
+use biplane_fluoroscope::Fluoroscope;
 use biplane_spots::{FindSpots, SpotInputs};
 use biplane_stage::{Artifact, Context, Hashed, Item, ParamsText, Promised, Store};
 
@@ -22,7 +25,7 @@ use crate::prepare::{CalibrationInputs, Prepared};
 use crate::results::write_if_changed;
 use crate::sources::FrameFacts;
 use crate::steps::{DISTORTION, DRAWING, ENVIRONMENT, ItemError, SPOTS};
-use crate::study::{Correction, ViewSource};
+use crate::study::{Correction, Study, Trial, ViewSource};
 use crate::walk::{Walk, Way};
 
 /// What the raw calibration pictures of a study gave.
@@ -32,6 +35,8 @@ pub struct Calibrated {
     pub calibrations: Vec<Hashed<Calibration>>,
     /// One a view; none where no plate was pictured.
     pub plates: Vec<Option<Hashed<PlateFit>>>,
+    /// How sure the calibrations of each trial are; none where nothing is known of it.
+    pub uncertainties: Vec<Option<Hashed<CalibrationUncertainty>>>,
     /// None where calibrations come from files.
     pub environment: Option<Hashed<Environment>>,
     /// What people look at.
@@ -77,7 +82,9 @@ pub enum CalibrateError {
 pub fn calibrate(prepared: &Prepared, store: &Store, context: &Context, way: Way) -> Walked {
     let Some(inputs) = prepared.equipment.inputs() else {
         let calibrations = prepared.equipment.known().to_vec();
-        return (Ok(Some(Calibrated { calibrations, ..Calibrated::default() })), way);
+        let stated = |trial: &Trial| stated(&prepared.study, &calibrations, trial).map(Hashed::new);
+        let uncertainties = prepared.study.trials.iter().map(stated).collect();
+        return (Ok(Some(Calibrated { calibrations, uncertainties, ..Calibrated::default() })), way);
     };
     let walk = Walk::new(&prepared.study, store, context, way);
     let mut calibrating = Calibrating { prepared, inputs, walk };
@@ -94,6 +101,25 @@ pub fn calibrate(prepared: &Prepared, store: &Store, context: &Context, way: Way
         Ok(calibrated) => Ok(calibrated),
     };
     (result, walk.way)
+}
+
+/// What the pipeline file says of how sure the calibrations of a trial are, if it says so.
+fn stated(
+    study: &Study,
+    calibrations: &[Hashed<Calibration>],
+    trial: &Trial,
+) -> Option<CalibrationUncertainty> {
+    let view = |(view, _): &(usize, String)| match &study.views.get(*view)?.source {
+        ViewSource::File { uncertainty: Some(stated), .. } => {
+            // Its distortion does not count here, and takes time to invert.
+            let ideal = Calibration { distortion: None, ..Calibration::clone(calibrations.get(*view)?) };
+            let distance = Fluoroscope::from(&ideal).source_to_detector_mm(stated.pixel_mm);
+            Some([distance, stated.source_mm, stated.detector_mm])
+        }
+        _ => None,
+    };
+    let views: Vec<[f64; 3]> = trial.frames.iter().map(view).collect::<Option<_>>()?;
+    Some(CalibrationUncertainty::independent(&views))
 }
 
 impl Calibrating<'_> {
@@ -140,7 +166,19 @@ impl Calibrating<'_> {
         });
         let calibrations = calibrations.collect();
         let inputs = self.pictures();
-        Ok(Some(Calibrated { calibrations, plates, environment: Some(environment), drawings, inputs }))
+        let of = |trial: &Trial| {
+            let views: Vec<usize> = trial.frames.iter().map(|(view, _)| *view).collect();
+            CalibrationUncertainty::of(&environment, &views).map(Hashed::new)
+        };
+        let uncertainties = study.trials.iter().map(of).collect();
+        Ok(Some(Calibrated {
+            calibrations,
+            plates,
+            uncertainties,
+            environment: Some(environment),
+            drawings,
+            inputs,
+        }))
     }
 
     fn correction(&self, view: usize) -> Correction {

@@ -11,9 +11,13 @@ use std::process::ExitCode;
 
 use biplane_acquisition::inspect::InspectError;
 use biplane_artifact::AxesSource;
+use biplane_objective::Kind;
+use biplane_optimiser::Optimiser;
 use biplane_stage::{Clean, Context, Size, Store};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Parser, Subcommand};
 
+use crate::compare::{CompareError, CompareWish, compare};
 use crate::convert::{ConvertArguments, ConvertError, convert};
 use crate::correct::{By, CorrectError, correct};
 use crate::diagnostics::slashes;
@@ -189,6 +193,57 @@ The limits are in [doctor] of the pipeline file. Exit code 1 where one is not ke
         #[arg(long)]
         trial: Option<String>,
     },
+    /// Compare objectives and optimisers on the study: error or repeatability, share converged, calls and time, as the thesis's
+    /// Tables 5.1 and 5.2. Changes no result.
+    #[command(after_help = "Examples:
+  biplane compare                                     three frames of every trial, without known poses: repeatability
+  biplane compare --body femur --reference known.csv  errors against known poses (a table of poses, or 16 numbers a row)
+  biplane compare --objectives symmetric,inverse_point --optimisers sqp,powell --frames 0 --csv compare.csv
+
+Searches start where [match.search] of the pipeline file says, whatever the study's own method is.")]
+    Compare {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// Objectives, parted by commas; all of them if none is named.
+        #[arg(long, value_delimiter = ',', value_name = "NAME", value_parser = named(&Kind::ALL, Kind::name))]
+        objectives: Vec<Kind>,
+        /// Optimisers, parted by commas.
+        #[arg(
+            long,
+            value_delimiter = ',',
+            value_name = "NAME",
+            value_parser = named(&Optimiser::ALL, Optimiser::name),
+            default_value = "levenberg_marquardt,sqp,bfgs"
+        )]
+        optimisers: Vec<Optimiser>,
+        /// Leave out `method = "rim"` and `"bingham2006"`.
+        #[arg(long)]
+        no_presets: bool,
+        /// This trial alone.
+        #[arg(long)]
+        trial: Option<String>,
+        /// This body alone.
+        #[arg(long)]
+        body: Option<String>,
+        /// Frames of each trial, evenly over it; 0 for all.
+        #[arg(long, default_value_t = 3)]
+        frames: usize,
+        /// Starts of each frame, in place of those of [match.search].
+        #[arg(long)]
+        starts: Option<usize>,
+        /// Calls of each search, in place of those of [match.search].
+        #[arg(long)]
+        calls: Option<usize>,
+        /// Known poses: errors are told, and only of frames that have one.
+        #[arg(long, value_name = "CSV")]
+        reference: Option<PathBuf>,
+        /// Write the table as CSV too.
+        #[arg(long, value_name = "FILE")]
+        csv: Option<PathBuf>,
+        /// Threads; 0 is one for each core. With more than one, times are not to be relied on.
+        #[arg(long, default_value_t = 1)]
+        threads: usize,
+    },
     /// Show the results of the last run and the size of the store.
     #[command(
         after_help = "The fit is the root mean square distance of the outline from its edges, over all views.
@@ -245,11 +300,11 @@ The store, .biplane/ beside the pipeline file, keeps what was computed; deleting
   biplane convert results/calibration/fluoroscopes.json --view A --to mayacam2 --output A.txt
   biplane convert cam1.txt cam2.txt --to jointtrack-biplane --pixel-mm 0.3 --output both.txt")]
     Convert(ConvertArguments),
-    /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses to fill in.
+    /// Look at a folder of data and write a commented pipeline.toml for it, and a table of start poses that may be filled in.
     #[command(
         after_help = "It looks for: folders of pictures side by side (one a fluoroscope), calibrations with the fluoroscope's
 name in theirs, meshes, distortion tables, tables of start poses. What it does not find, it says.
-No file is overwritten. Then: read pipeline.toml through, fill in starts.csv, `biplane plan`, `biplane run`."
+No file is overwritten. Then: read pipeline.toml through, `biplane plan`, `biplane run`."
     )]
     Init {
         /// The folder; the file is written there, unless there is one.
@@ -357,6 +412,53 @@ fn obey(command: Command) -> Ended {
             print(&found.text);
             Ok(if found.well { End::Good } else { End::SomeFailed })
         }
+        Command::Compare {
+            pipeline,
+            objectives,
+            optimisers,
+            no_presets,
+            trial,
+            body,
+            frames,
+            starts,
+            calls,
+            reference,
+            csv,
+            threads,
+        } => {
+            let objectives = if objectives.is_empty() { Kind::ALL.to_vec() } else { objectives };
+            let presets = !no_presets;
+            let wish = CompareWish {
+                objectives,
+                optimisers,
+                presets,
+                trial,
+                body,
+                frames,
+                starts,
+                calls,
+                reference,
+                csv,
+                threads,
+            };
+            let context = Context::new();
+            stop_on_interrupt(&context);
+            let text = compare(load(&pipeline.file)?, &wish, &context).map_err(|error| {
+                let end = match &error {
+                    CompareError::Stopped { .. } => End::Stopped,
+                    CompareError::NoSuch { .. } | CompareError::Nothing(_) | CompareError::Parameters(_) => {
+                        End::BadConfiguration
+                    }
+                    CompareError::Store(_) | CompareError::Write { .. } | CompareError::Threads(_) => {
+                        End::Internal
+                    }
+                    _ => End::BadInput,
+                };
+                (end, error.to_string())
+            })?;
+            print(&text);
+            Ok(End::Good)
+        }
         Command::Status { pipeline } => status(&load(&pipeline.file)?),
         Command::Clean { pipeline, dry_run, all } => {
             let store = Store::open(&load(&pipeline.file)?.hidden()).map_err(internal)?;
@@ -435,6 +537,18 @@ fn obey(command: Command) -> Ended {
             Ok(End::Good)
         }
     }
+}
+
+/// Takes one of some names; a wrong one is answered with all of them.
+fn named<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let names = PossibleValuesParser::new(all.iter().map(|item| name(*item)));
+    names.try_map(move |given| {
+        let found = all.iter().find(|item| name(**item) == given);
+        found.copied().ok_or("not one of the names")
+    })
 }
 
 fn is_pipeline(file: &Path) -> bool {
@@ -616,8 +730,8 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     }
     let cached: usize = outcome.steps.iter().map(|(_, c)| c.cached).sum();
     let ran: usize = outcome.steps.iter().map(|(_, c)| c.ran).sum();
-    let [good, doubtful, failed] = outcome.verdicts();
-    text += &format!("{good} good, {doubtful} doubtful, {failed} failed. ");
+    let [good, doubtful, ambiguous, failed] = outcome.verdicts();
+    text += &format!("{}. ", summary::counts([good, doubtful, ambiguous, failed]));
     text += &match (ran, outcome.failures.len()) {
         (0, 0) => format!("Nothing to do: {cached} items cached.\n"),
         _ => {
@@ -635,8 +749,12 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     text += &slices_lines(study, outcome);
     text += &models_lines(study, outcome);
     text += &to_look_at(study, outcome);
-    let rows = good + doubtful + failed;
-    if outcome.failures.is_empty() && rows > 0 && (good == 0 || 2 * failed > rows) {
+    let rows = good + doubtful + ambiguous + failed;
+    if ambiguous > 0 {
+        text += "\nAn ambiguous pose fits no better than another one: put a pose near the right one into edits/poses.csv, rough is enough\n\
+                 (poses.csv has the other one in alternative_*), and run again.\n";
+    }
+    if outcome.failures.is_empty() && rows > 0 && (good + ambiguous == 0 || 2 * failed > rows) {
         text += "\nHardly a match is good. Check first: are the folders (or calibrations) of two views exchanged? Do the\n\
                  paired frames belong together (`offset`)? Are the start poses in the world of the calibration, of these\n\
                  meshes, in mm? Is a distortion table missing? The overlays show it.\n";
@@ -668,14 +786,8 @@ fn status(study: &Study) -> Ended {
     if path.is_file() {
         let rows = summary::of_file(&path).map_err(|e| (End::BadInput, e.to_string()))?;
         print(&summary::table(&rows));
-        let of = |verdict: &str| rows.iter().filter(|r| r.verdict == verdict).count();
-        print(&format!(
-            "\n{} good, {} doubtful, {} failed ({})\n",
-            of("good"),
-            of("doubtful"),
-            of("failed"),
-            study.relative(&path)
-        ));
+        let verdicts = summary::VERDICTS.map(|v| rows.iter().filter(|r| r.verdict == v.word()).count());
+        print(&format!("\n{} ({})\n", summary::counts(verdicts), study.relative(&path)));
     } else {
         print("no results yet: `biplane run` makes them\n");
     }

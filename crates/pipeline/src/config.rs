@@ -109,9 +109,28 @@ pub struct FluoroscopeSection {
     /// Distortion table (CSV) of pictures that are not corrected, instead of a `plate`.
     #[schemars(with = "Option<String>")]
     pub distortion: Option<Located>,
+    /// How sure the calibration file is, where its program tells: `uncertainty = { source_mm = 0.3, detector_mm = 0.1, pixel_mm = 0.31 }`.
+    /// It becomes a part of the stated uncertainty of every pose. Of all fluoroscopes or of none; not with `beads`, which tell it.
+    #[schemars(with = "Option<StatedUncertainty>")]
+    pub uncertainty: Option<toml::Spanned<StatedUncertainty>>,
     /// Picture of the same size as its frames, black where edges do not count (a marker, a collimator).
     #[schemars(with = "Option<String>")]
     pub mask: Option<Located>,
+}
+
+/// How sure a calibration of another program is. Errors of different axes and fluoroscopes are taken as independent.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StatedUncertainty {
+    /// Standard deviation of the source's place along each axis, mm.
+    #[schemars(range(min = 0.0))]
+    pub source_mm: f64,
+    /// Standard deviation of the detector's place along each axis, mm.
+    #[schemars(range(min = 0.0))]
+    pub detector_mm: f64,
+    /// Side of a pixel on the detector, mm: it tells how far the detector is from the source.
+    #[schemars(range(min = 0.0))]
+    pub pixel_mm: f64,
 }
 
 /// One path, or a list of them.

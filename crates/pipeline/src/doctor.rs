@@ -7,15 +7,13 @@
 
 use std::collections::BTreeMap;
 
-use biplane_artifact::{Calibration, Circle, ContentHash, Environment, Match, Verdict};
-use biplane_environment::pixel_by_parameters;
+use biplane_artifact::{Calibration, Circle, ContentHash, Match, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
-use biplane_optimisation::{Disagreement, EdgeField, View, disagreement, pose_covariance_of_calibration};
+use biplane_optimisation::{Disagreement, EdgeField, View, disagreement};
 use biplane_outline::RimMesh;
 use biplane_spots::find_border;
 use biplane_stage::{Context, Hashed, Store, StoreError, Stored};
-use nalgebra::{DMatrix, Matrix2xX};
 use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, Calibrated, calibrate};
@@ -79,7 +77,7 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
     let models = models::look::look(&prepared, &store, &context, &mut Vec::new());
     let steps = Steps {
         prepared: &prepared,
-        calibrations: &calibrated.calibrations,
+        calibrated: &calibrated,
         models: &models,
         store: &store,
         context: &context,
@@ -124,7 +122,6 @@ struct Looking<'a> {
 /// One body in one frame whose match did not fail.
 struct Matched {
     body: usize,
-    pose: Pose,
     found: Match,
     /// None with one view.
     disagreement: Option<Disagreement>,
@@ -195,7 +192,7 @@ impl Looking<'_> {
             let mesh = self.meshes[*body].as_ref();
             let disagreement =
                 pair.zip(mesh).and_then(|(pair, mesh)| disagreement(mesh, pair, &pose, &search));
-            found_here.push(Matched { body: *body, pose, found: Match::clone(&found), disagreement });
+            found_here.push(Matched { body: *body, found: Match::clone(&found), disagreement });
         }
         Some(found_here)
     }
@@ -313,30 +310,33 @@ impl Looking<'_> {
     }
 
     fn poses_are_sure(&self, all: &[Matched], diagnosis: &mut Diagnosis) {
-        let Some(environment) = &self.calibrated.environment else {
-            diagnosis.text += "The calibration comes from files, which do not say how sure it is: what it adds to the uncertainty of a \
-                               pose is not known.\n";
+        if self.calibrated.uncertainties.get(self.trial).is_none_or(Option::is_none) {
+            diagnosis.text += "The calibration comes from files, and it is not said how sure it is (`uncertainty` of each fluoroscope): \
+                               what it adds to the uncertainty of a pose is not known.\n";
             return;
-        };
+        }
         let limit = self.study().doctor.max_pose_sigma_mm;
         let mut rows = Vec::new();
         for body in self.study().trials[self.trial].bodies.iter().copied() {
             let own: Vec<&Matched> = all.iter().filter(|g| g.body == body).collect();
             let Some(good) = own.get(own.len() / 2) else { continue };
-            let sigma = self.of_calibration(environment, body, &good.pose);
+            let sigma = good.found.calibration_sigmas();
             let judged = match sigma {
                 Some([mm, _]) if mm <= limit => "sure",
                 Some(_) => "unsure",
                 None => "not held by the outlines",
             };
             diagnosis.well &= judged == "sure";
-            let [mm, deg] = sigma.map_or([f64::NAN; 2], |s| s);
+            let [mm, rad] = sigma.unwrap_or([f64::NAN; 2]);
+            let all = [good.found.translation_sigma_mm(), good.found.rotation_sigma_rad()];
+            let [edge_mm, edge_rad] =
+                [(all[0], mm), (all[1], rad)].map(|(all, own)| (all * all - own * own).sqrt());
             rows.push(vec![
                 self.study().bodies[body].name.clone(),
                 format!("{mm:.3}"),
-                format!("{:.3}", deg.to_degrees()),
-                format!("{:.3}", good.found.translation_sigma_mm()),
-                format!("{:.3}", good.found.rotation_sigma_rad().to_degrees()),
+                format!("{:.3}", rad.to_degrees()),
+                format!("{edge_mm:.3}"),
+                format!("{:.3}", edge_rad.to_degrees()),
                 judged.to_owned(),
             ]);
         }
@@ -348,33 +348,6 @@ impl Looking<'_> {
             rows.into_iter(),
             &[1, 2, 3, 4],
         );
-    }
-
-    /// Standard deviations of a pose, mm and rad, that the covariance of the calibration brings.
-    fn of_calibration(&self, environment: &Environment, body: usize, pose: &Pose) -> Option<[f64; 2]> {
-        let views: Vec<usize> = self.study().trials[self.trial].frames.iter().map(|(v, _)| *v).collect();
-        let parameters = environment.covariance.len();
-        let covariance = DMatrix::from_fn(parameters, parameters, |i, j| {
-            environment.covariance[i].get(j).copied().unwrap_or(0.0)
-        });
-        let seen: Vec<View> = views
-            .iter()
-            .map(|v| View {
-                fluoroscope: self.fluoroscope(*v),
-                edges: EdgeField::new(&biplane_artifact::Curves::default(), None),
-            })
-            .collect();
-        let derivative = |slot: usize, point: &biplane_geometry::Point3| {
-            let view = views[slot];
-            let own = pixel_by_parameters(environment.views.get(view)?, point)?;
-            let mut all = Matrix2xX::zeros(parameters);
-            all.fixed_view_mut::<2, 9>(0, 9 * view).copy_from(&own);
-            Some(all)
-        };
-        let mesh = self.meshes[body].as_ref()?;
-        let found = pose_covariance_of_calibration(mesh, &seen, pose, &covariance, derivative)?;
-        let sigma = |from: usize| (from..from + 3).map(|i| found[(i, i)]).sum::<f64>().sqrt();
-        Some([sigma(0), sigma(3)])
     }
 }
 

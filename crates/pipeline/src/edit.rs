@@ -100,9 +100,9 @@ pub fn edit(study: Study, wish: &Wish<'_>) -> Result<String, EditCommandError> {
     let store = Store::open(&prepared.study.hidden())?;
     let context = Context::new();
     let calibrated = calibrate(&prepared, &store, &context, Way::Look(Vec::new())).0?.unwrap_or_default();
-    let (study, calibrations) = (&prepared.study, &calibrated.calibrations);
+    let (study, calibrated) = (&prepared.study, &calibrated);
     let models = &models::look::look(&prepared, &store, &context, &mut Vec::new());
-    let steps = Steps { prepared: &prepared, calibrations, models, store: &store, context: &context };
+    let steps = Steps { prepared: &prepared, calibrated, models, store: &store, context: &context };
     known("trial", wish.trial, study.trials.iter().map(|t| t.name.as_str()), |a, b| a == b)?;
     let of_trial = |job: &&Job| wish.trial.is_none_or(|name| study.trials[job.trial].name == name);
     let jobs: Vec<&Job> = prepared.jobs.iter().filter(of_trial).collect();
@@ -197,7 +197,7 @@ struct Made {
 
 impl Made {
     fn of(steps: &Steps<'_>, job: &Job) -> Option<Self> {
-        if steps.calibrations.is_empty() {
+        if steps.calibrated.calibrations.is_empty() {
             return None;
         }
         let standing = steps.standing(job)?;

@@ -4,6 +4,7 @@ use biplane_artifact::{Curves, EditedContour, EditedPiece};
 use biplane_geometry::{Curve, Point2};
 use biplane_stage::{Context, Store, StoreError};
 
+use crate::calibrate::Calibrated;
 use crate::edits::Drawn;
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::slices;
@@ -33,8 +34,9 @@ pub fn list(study: Study) -> Result<(String, bool), EditListError> {
     let prepared = Prepared::of(study)?;
     let store = Store::open(&prepared.study.hidden())?;
     let context = Context::new();
+    let calibrated = Calibrated::default();
     let steps =
-        Steps { prepared: &prepared, calibrations: &[], models: &[], store: &store, context: &context };
+        Steps { prepared: &prepared, calibrated: &calibrated, models: &[], store: &store, context: &context };
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for job in &prepared.jobs {
         for slot in

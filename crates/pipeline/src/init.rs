@@ -1,7 +1,7 @@
 //! `biplane init`: looks at a folder of data and writes a commented `pipeline.toml` for it.
 //!
 //! What files are is told by what they hold; which belong together is guessed from names, and the file says so. An
-//! existing file is never overwritten. Where there are no start poses, a table to fill in is written beside it.
+//! existing file is never overwritten. Where there are no start poses, a table that may be filled in is written beside it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -126,7 +126,7 @@ pub fn init(folder: &Path) -> Result<String, InitError> {
         found.starts.len()
     );
     if let Some(table) = &table {
-        let _ = writeln!(said, "wrote {}: a table of start poses to fill in", slashes(table));
+        let _ = writeln!(said, "wrote {}: a table of start poses, which may stay as it is", slashes(table));
     }
     for line in &missing {
         let _ = writeln!(said, "missing: {line}");
@@ -368,8 +368,10 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
         match found.starts.as_slice() {
             [] => {
                 let table = found.template.unwrap_or(TABLES[0]);
-                let _ =
-                    writeln!(out, "starts = \"{table}\"     # FILL IN that table: a few frames are enough\n");
+                let _ = writeln!(
+                    out,
+                    "starts = \"{table}\"     # may stay empty: a body without a start is looked for\n"
+                );
             }
             [first, others @ ..] => {
                 let _ = writeln!(out, "starts = {}", quoted(first));
@@ -381,10 +383,6 @@ fn compose(found: &Found, name: &str) -> (String, Vec<String>) {
         }
     }
     if found.starts.is_empty() {
-        let table = found.template.unwrap_or(TABLES[0]);
-        missing.push(format!(
-            "start poses: at least one row for each body and trial in {table}, with the columns {EXAMPLE_HEADER}"
-        ));
         out += &explained("#");
         out.push('\n');
     }
@@ -406,14 +404,15 @@ fn explained(mark: &str) -> String {
         "  trial, frame, body    names as in pipeline.toml; the frame is the number in the picture's name".to_owned(),
         "  tx_mm, ty_mm, tz_mm   where the mesh's origin lies in the world of the calibration, mm".to_owned(),
         "  qw, qx, qy, qz        rotation from mesh to world: unit quaternion, its scalar (qw) first".to_owned(),
-        "That is x_world = R(q) x_mesh + t. Rough is enough: the outline should come within about".to_owned(),
+        "That is x_world = R(q) x_mesh + t. Not needed: a body without a start is looked for. With one it is found faster,".to_owned(),
+        "and told from a place where it fits as well. Rough is enough: the outline should come within about".to_owned(),
         format!("{reach} px of its edges ([match] search_px). Frames without a row start between those that have one."),
     ]
     .map(|line| format!("{mark} {line}\n"))
     .concat()
 }
 
-/// A table of start poses without rows, and a row to fill in for each body of each trial.
+/// A table of start poses without rows, and a row that may be filled in for each body of each trial.
 fn template(found: &Found, folder: &Path) -> String {
     let mut out = explained("#");
     out += "# Take the # and the space from a line below, and write numbers for the dots.\n";
@@ -539,7 +538,7 @@ mod tests {
             text.contains("mesh = \"models/tray_15000.stl\"")
                 && text.contains("# mesh = \"models/tray_3500.stl\"")
         );
-        assert_eq!(missing.len(), 2, "calibration of B and starts: {missing:?}");
+        assert_eq!(missing.len(), 1, "the calibration of B, and no starts: {missing:?}");
         let file: Result<crate::config::PipelineFile, _> = toml::from_str(&text);
         assert!(file.is_ok(), "{text}\n{file:?}");
     }

@@ -6,6 +6,7 @@
 
 pub mod calibrate;
 pub mod cli;
+pub mod compare;
 pub mod config;
 pub mod convert;
 pub mod correct;

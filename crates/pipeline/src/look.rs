@@ -67,7 +67,7 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     let models = models::look::look(&prepared, &store, &context, &mut made);
     let steps = Steps {
         prepared: &prepared,
-        calibrations: &calibrated.calibrations,
+        calibrated: &calibrated,
         models: &models,
         store: &store,
         context: &context,
@@ -126,7 +126,7 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
         }
         let item = steps.item(job, &study.bodies[*body].name);
         let modelled = steps.model(*body).is_ok();
-        let ready = own.len() == job.pictures.len() && !steps.calibrations.is_empty() && modelled;
+        let ready = own.len() == job.pictures.len() && !steps.calibrated.calibrations.is_empty() && modelled;
         let mut matched = None;
         looks.push(after(steps, MATCH, &item, fails, ready, || {
             let (why, stored) = steps.explain_match(job, place, &own)?;

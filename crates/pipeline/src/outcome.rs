@@ -16,6 +16,8 @@ pub enum StartKind {
     File,
     /// Between given ones, or the nearest given one at the ends.
     Interpolated,
+    /// None was given: the body is looked for anywhere.
+    Anywhere,
 }
 
 impl StartKind {
@@ -25,6 +27,7 @@ impl StartKind {
             Self::Edit => "edit",
             Self::File => "file",
             Self::Interpolated => "interpolated",
+            Self::Anywhere => "anywhere",
         }
     }
 }
@@ -36,8 +39,8 @@ pub struct BodyOutcome {
     pub body: usize,
     /// Where its start came from.
     pub start: StartKind,
-    /// The start itself.
-    pub start_pose: Pose,
+    /// The start itself, if there is one.
+    pub start_pose: Option<Pose>,
     /// The match, or why there is none.
     pub result: Result<Match, String>,
     /// Its outline in each view, in the order of the trial's views; empty where there is no match.
@@ -222,9 +225,9 @@ impl Outcome {
         self.rows().flat_map(|(frame, body)| body.flagged().map(move |(slot, why)| (frame, body, slot, why)))
     }
 
-    /// How many verdicts are good, doubtful and failed.
-    pub fn verdicts(&self) -> [usize; 3] {
-        let mut counts = [0; 3];
+    /// How many verdicts are good, doubtful, ambiguous and failed.
+    pub fn verdicts(&self) -> [usize; 4] {
+        let mut counts = [0; 4];
         for (_, body) in self.rows() {
             counts[body.verdict() as usize] += 1;
         }

@@ -17,6 +17,7 @@ use biplane_artifact::{
     BeadClicks, BeadList, Calibration, DistortionTable, Frame, PixelOrigin, PlateClicks, PlatePattern, Start,
 };
 use biplane_geometry::Point3;
+use biplane_optimisation::Method;
 use biplane_spots::{Look, SpotParams};
 use biplane_stage::{Hashed, ParamsText};
 
@@ -50,8 +51,8 @@ pub struct Job {
     pub time_s: Option<f64>,
     /// One picture a view of the trial.
     pub pictures: Vec<FrameSource>,
-    /// Index of each body, where its start came from, and the start.
-    pub bodies: Vec<(usize, StartKind, Hashed<Start>)>,
+    /// Index of each body, where its start came from, and the start, if there is one.
+    pub bodies: Vec<(usize, StartKind, Option<Hashed<Start>>)>,
     /// Files of what a person drew in each picture; more than one is a fault.
     pub edits: Vec<Vec<PathBuf>>,
 }
@@ -251,8 +252,25 @@ impl Prepared {
             for &body in &trial.bodies {
                 let centroid = centre(&study, body, meshes[body].as_deref());
                 let name = &study.bodies[body].name;
-                let found = starts_of(&trial.name, name, &labels, edits.as_ref(), table, centroid);
-                let Some(found) = faults.keep(found) else { continue };
+                let found = match starts_of(&trial.name, name, &labels, edits.as_ref(), table, centroid) {
+                    Ok(found) => found,
+                    Err(none) if study.looks_anywhere() => {
+                        // An empty table is a form that nobody filled in.
+                        let given = table.filter(|table| !table.rows.is_empty());
+                        warnings
+                            .extend(given.map(|_| format!("{none}. Until then it is looked for anywhere")));
+                        vec![(StartKind::Anywhere, None); labels.len()]
+                    }
+                    Err(none) => {
+                        let other = match study.matching.method {
+                            Method::Bingham2006 => "; `method = \"bingham2006\"` needs one",
+                            Method::Search => "; `method = \"search\"` needs one",
+                            Method::Rim => ", or let the body be looked for: [match] anywhere = true",
+                        };
+                        faults.list.push(study.shorten(&format!("{none}{other}")));
+                        continue;
+                    }
+                };
                 let between = found.iter().filter(|(kind, _)| *kind == StartKind::Interpolated).count();
                 if between > 0 {
                     let all = found.len();
@@ -267,7 +285,7 @@ impl Prepared {
             for (place, (label, time_s, sources)) in pairs.into_iter().enumerate() {
                 let bodies = starts.iter().filter_map(|(body, found)| {
                     let (kind, pose) = found.get(place)?;
-                    Some((*body, kind.clone(), Hashed::new(Start(*pose))))
+                    Some((*body, kind.clone(), pose.map(|pose| Hashed::new(Start(pose)))))
                 });
                 let edits = vec![Vec::new(); sources.len()];
                 jobs.push(Job {
@@ -354,7 +372,9 @@ impl Faults<'_> {
 
 /// `None` where raw pictures say where a view stands.
 fn calibration(view: &View) -> Result<Option<Calibration>, CalibrationError> {
-    let ViewSource::File { calibration, pixel_origin, distortion } = &view.source else { return Ok(None) };
+    let ViewSource::File { calibration, pixel_origin, distortion, .. } = &view.source else {
+        return Ok(None);
+    };
     let origin = match pixel_origin {
         config::Origin::Centre => PixelOrigin::Centre,
         config::Origin::Corner => PixelOrigin::Corner,

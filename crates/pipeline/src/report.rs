@@ -38,6 +38,8 @@ struct Row {
     fit_px: String,
     share: String,
     sigma: Option<[String; 2]>,
+    /// Half-widths of 95 % intervals: of the place, of the rotation.
+    interval: Option<[String; 2]>,
     start: &'static str,
     look: String,
 }
@@ -64,7 +66,7 @@ struct Shown {
 struct Line {
     body: String,
     colour: String,
-    counts: [usize; 3],
+    counts: [usize; 4],
     /// Place of the frame's card, its label, the verdict.
     frames: Vec<(usize, String, &'static str)>,
     fit_mm: String,
@@ -77,6 +79,8 @@ struct TrialPart {
     name: String,
     views: Vec<String>,
     timed: bool,
+    /// Whether the calibration's uncertainty is in what is stated.
+    calibration_known: bool,
     explained: bool,
     outlined: bool,
     lines: Vec<Line>,
@@ -152,6 +156,7 @@ struct Page<'a> {
     version: &'a str,
     good: usize,
     doubtful: usize,
+    ambiguous: usize,
     failed: usize,
     frames: usize,
     flagged: usize,
@@ -173,12 +178,13 @@ struct Page<'a> {
 pub fn report_html(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<String, ReportError> {
     let mut environment = minijinja::Environment::new();
     environment.add_template("report.html", include_str!("report.html"))?;
-    let [good, doubtful, failed] = outcome.verdicts();
+    let [good, doubtful, ambiguous, failed] = outcome.verdicts();
     let page = Page {
         name: &study.name,
         version: env!("CARGO_PKG_VERSION"),
         good,
         doubtful,
+        ambiguous,
         failed,
         frames: outcome.frames.len(),
         flagged: outcome.flagged().count(),
@@ -315,6 +321,7 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
                     .map(|m| [m.translation_sigma_mm(), m.rotation_sigma_rad().to_degrees()])
                     .filter(|sigma| sigma.iter().all(|s| *s < UNKNOWN))
                     .map(|sigma| sigma.map(|s| format!("{s:.3}"))),
+                interval: found.and_then(interval),
                 start: body.start.word(),
                 look: look(body, &views),
             });
@@ -330,6 +337,7 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
     TrialPart {
         name: recording.name.clone(),
         views,
+        calibration_known: outcome.calibration.uncertainties.get(trial).is_some_and(Option::is_some),
         timed: rows.iter().any(|r: &Row| !r.time.is_empty()),
         explained: rows.iter().any(|r| !r.reason.is_empty()),
         outlined: rows.iter().any(|r| !r.look.is_empty()),
@@ -337,6 +345,16 @@ fn part(study: &Study, outcome: &Outcome, trial: usize) -> TrialPart {
         rows,
         cards,
     }
+}
+
+/// Half-widths of the 95 % intervals along x, y, z, of the place (mm) and of the rotation (degrees).
+fn interval(found: &Match) -> Option<[String; 2]> {
+    let known = found.interval_95.iter().all(|w| *w < UNKNOWN);
+    let three = |from: usize, scale: f64| {
+        let of = found.interval_95[from..from + 3].iter().map(|w| format!("{:.2}", scale * w));
+        of.collect::<Vec<_>>().join(" / ")
+    };
+    known.then(|| [three(0, 1.0), three(3, 1.0_f64.to_degrees())])
 }
 
 /// Which views' outlines a person should look at, and which ones a person drew.
@@ -379,7 +397,7 @@ fn line(study: &Study, outcome: &Outcome, trial: usize, place: usize) -> Line {
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).map_or("-".to_owned(), |v| format!("{v:.3}"))
     };
-    let mut counts = [0; 3];
+    let mut counts = [0; 4];
     for (.., body) in &own {
         counts[body.verdict() as usize] += 1;
     }
@@ -421,6 +439,7 @@ mod tests {
                 calibration: "c".into(),
                 pixel_origin: crate::config::Origin::Centre,
                 distortion: None,
+                uncertainty: None,
             },
         };
         Study {
@@ -468,7 +487,7 @@ mod tests {
             bodies: vec![BodyOutcome {
                 body: 0,
                 start: StartKind::File,
-                start_pose: biplane_geometry::Pose::identity(),
+                start_pose: Some(biplane_geometry::Pose::identity()),
                 result: Err("a < b".into()),
                 contours: vec![],
             }],

@@ -74,23 +74,35 @@ pub fn distortion_csv(table: &DistortionTable) -> String {
     text
 }
 
+/// Columns of a pose.
+const POSE: [&str; 7] = ["tx_mm", "ty_mm", "tz_mm", "qw", "qx", "qy", "qz"];
+/// Columns of standard deviations: of the pose, and what of them the calibration brings.
+const SIGMAS: [&str; 4] = ["sigma_t_mm", "sigma_r_deg", "calibration_sigma_t_mm", "calibration_sigma_r_deg"];
+/// Columns of half-widths of intervals.
+const INTERVALS: [&str; 6] = ["tx_mm", "ty_mm", "tz_mm", "rx_deg", "ry_deg", "rz_deg"];
+
+/// Numbers of the upper triangle of the covariance.
+const COVARIANCES: usize = 21;
+/// Columns of what the search did.
+const SEARCHED: [&str; 4] = ["iterations", "objective", "starts_tried", "starts_converged"];
+
 /// The header of `poses.csv`.
 fn header(views: &[&str]) -> Vec<String> {
-    let mut names: Vec<String> = "trial frame body verdict tx_mm ty_mm tz_mm qw qx qy qz time_s start reason"
-        .split(' ')
-        .map(str::to_owned)
-        .collect();
+    let mut names: Vec<String> = ["trial", "frame", "body", "verdict"].map(str::to_owned).to_vec();
+    names.extend(POSE.iter().chain(&["time_s", "start", "reason"]).map(|name| (*name).to_owned()));
     for view in views {
         names.extend(["rms_px", "rms_mm", "matched_share", "inset_px"].map(|what| format!("{view}_{what}")));
     }
-    names.extend(["sigma_t_mm".to_owned(), "sigma_r_deg".to_owned()]);
+    names.extend(SIGMAS.map(str::to_owned));
+    names.extend(INTERVALS.map(|what| format!("interval95_{what}")));
     for (i, (a, unit_a)) in TWIST.iter().enumerate() {
         for (b, unit_b) in &TWIST[i..] {
             let unit = if unit_a == unit_b { format!("{unit_a}2") } else { format!("{unit_a}_{unit_b}") };
             names.push(format!("cov_{a}_{b}_{unit}"));
         }
     }
-    names.push("iterations".to_owned());
+    names.extend(SEARCHED.map(str::to_owned));
+    names.extend(POSE.map(|what| format!("alternative_{what}")));
     names
 }
 
@@ -102,6 +114,10 @@ fn fixed(value: f64, digits: usize) -> String {
     } else {
         text
     }
+}
+
+fn empty(cells: usize) -> impl Iterator<Item = String> {
+    std::iter::repeat_n(String::new(), cells)
 }
 
 fn pose_cells(pose: PoseRecord) -> impl Iterator<Item = String> {
@@ -118,8 +134,11 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
         body.verdict().word().to_owned(),
     ];
     // Where no match could be made, the search ended where it would have started.
-    let pose = body.result.as_ref().map_or_else(|_| PoseRecord::from(body.start_pose), |m| m.pose);
-    cells.extend(pose_cells(pose));
+    let pose = body.result.as_ref().ok().map(|m| m.pose).or(body.start_pose.map(PoseRecord::from));
+    match pose {
+        Some(pose) => cells.extend(pose_cells(pose)),
+        None => cells.extend(empty(POSE.len())),
+    }
     cells.push(frame.time_s.map_or(String::new(), |t| fixed(t, 6)));
     cells.push(body.start.word().to_owned());
     cells.push(body.reason());
@@ -133,20 +152,33 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
                 fixed(f.matched_share, 4),
                 fixed(f.inset_px, 4),
             ]),
-            None => cells.extend(std::iter::repeat_n(String::new(), 4)),
+            None => cells.extend(empty(4)),
         }
     }
     match found {
         Some(m) => {
             // A match whose edges do not determine the pose has no covariance; its numbers are immense then.
             let known = |value: f64, text: String| if value.abs() < UNKNOWN { text } else { String::new() };
-            let (t, r) = (m.translation_sigma_mm(), m.rotation_sigma_rad().to_degrees());
-            cells.extend([known(t, fixed(t, 6)), known(r, fixed(r, 6))]);
+            let number = |value: f64| known(value, fixed(value, 6));
+            cells.extend([number(m.translation_sigma_mm()), number(m.rotation_sigma_rad().to_degrees())]);
+            match m.calibration_sigmas() {
+                Some([t, r]) => cells.extend([number(t), number(r.to_degrees())]),
+                None => cells.extend(empty(2)),
+            }
+            let half = m.interval_95.iter().enumerate();
+            cells.extend(half.map(|(i, w)| number(if i < 3 { *w } else { w.to_degrees() })));
             let upper = (0..6).flat_map(|i| (i..6).map(move |j| m.covariance[i][j]));
             cells.extend(upper.map(|c| known(c, format!("{c:.6e}"))));
-            cells.push(m.iterations.to_string());
+            cells.extend([m.iterations.to_string(), fixed(m.objective, 6)]);
+            cells.extend([m.starts.tried, m.starts.converged].map(|n| n.to_string()));
+            match &m.alternative {
+                Some(other) => cells.extend(pose_cells(other.pose)),
+                None => cells.extend(empty(POSE.len())),
+            }
         }
-        None => cells.extend(std::iter::repeat_n(String::new(), 2 + 21 + 1)),
+        None => {
+            cells.extend(empty(SIGMAS.len() + INTERVALS.len() + COVARIANCES + SEARCHED.len() + POSE.len()));
+        }
     }
     cells
 }
@@ -184,6 +216,15 @@ mod tests {
         assert_eq!((covariances[0].as_str(), covariances[3].as_str()), ("cov_tx_tx_mm2", "cov_tx_rx_mm_rad"));
         assert_eq!(covariances[20], "cov_rz_rz_rad2");
         assert_eq!(names[14..18], ["A_rms_px", "A_rms_mm", "A_matched_share", "A_inset_px"]);
+    }
+
+    #[test]
+    fn intervals_have_the_order_of_the_covariance_and_every_name_is_there_once() {
+        let names = header(&["A", "B"]);
+        let from = names.iter().position(|n| n == "interval95_tx_mm").unwrap();
+        assert_eq!(names[from..from + 6].join(","), INTERVALS.map(|i| format!("interval95_{i}")).join(","));
+        let once: std::collections::BTreeSet<&String> = names.iter().collect();
+        assert_eq!(once.len(), names.len());
     }
 
     #[test]

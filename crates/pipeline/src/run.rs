@@ -134,7 +134,7 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     provenance.inputs.extend(modelled.inputs);
     let steps_of_frames = Steps {
         prepared: &prepared,
-        calibrations: &calibrated.calibrations,
+        calibrated: &calibrated,
         models: &modelled.models,
         store: &store,
         context,
@@ -264,7 +264,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         frame.outcome.bodies.push(BodyOutcome {
             body: *body,
             start: start.clone(),
-            start_pose: pose.0,
+            start_pose: pose.as_ref().map(|start| start.0),
             result,
             contours,
         });
@@ -550,9 +550,9 @@ fn gather(
 fn provenance(prepared: &Prepared) -> Provenance {
     let study = &prepared.study;
     let text = |result: Result<String, toml::ser::Error>| result.unwrap_or_default();
-    let mut inputs = Vec::new();
+    let (mut inputs, mut parameters) = (Vec::new(), Vec::new());
     for (view, calibration) in study.views.iter().zip(prepared.equipment.known()) {
-        if let ViewSource::File { calibration: file, pixel_origin, distortion } = &view.source {
+        if let ViewSource::File { calibration: file, pixel_origin, distortion, uncertainty } = &view.source {
             let distortion = distortion.as_ref().map(|d| format!(", {}", study.relative(d)));
             let (file, origin) = (study.relative(file), pixel_origin.word());
             let name = format!(
@@ -561,9 +561,11 @@ fn provenance(prepared: &Prepared) -> Provenance {
                 view.name
             );
             inputs.push((name, calibration.hash().to_hex()));
+            let stated =
+                uncertainty.map(|u| (format!("uncertainty of {}", view.name), text(toml::to_string(&u))));
+            parameters.extend(stated);
         }
     }
-    let mut parameters = Vec::new();
     if let Some(calibration) = prepared.equipment.inputs() {
         let beads = study.beads.as_ref().map(|b| study.relative(&b.list));
         inputs.extend(beads.map(|file| (file, calibration.beads.hash().to_hex())));
@@ -615,7 +617,7 @@ mod tests {
     use super::*;
 
     fn body(result: Result<Match, String>) -> BodyOutcome {
-        let start_pose = biplane_geometry::Pose::identity();
+        let start_pose = Some(biplane_geometry::Pose::identity());
         BodyOutcome { body: 0, start: crate::outcome::StartKind::File, start_pose, result, contours: vec![] }
     }
 
@@ -641,7 +643,7 @@ mod tests {
         let outcome = gather([frame(2), frame(3)].into_iter(), steps, vec!["first".into()], &mut provenance);
         assert_eq!(outcome.steps, [(SEGMENT, StepCount { cached: 2, ran: 5, failed: 0 })], "no empty steps");
         assert_eq!(outcome.warnings, ["first", "w", "w"]);
-        assert_eq!(outcome.verdicts(), [0, 0, 2]);
+        assert_eq!(outcome.verdicts(), [0, 0, 0, 2]);
         let names: Vec<&str> = provenance.inputs.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["a", "b", "c"]);
     }

@@ -2,7 +2,7 @@
 //!
 //! A person's `edits/poses.csv` wins over the trial's table. A frame that neither names takes the pose between the
 //! nearest given ones before and after it (by place in the trial's list of frames), or the nearest one at the ends; so a
-//! laboratory can give a few frames of many.
+//! laboratory can give a few frames of many. Where none is given at all, a body is looked for anywhere, unless the pipeline file says not to.
 
 use biplane_geometry::{Point3, Pose};
 
@@ -37,7 +37,7 @@ pub fn starts_of(
     edits: Option<&PoseTable>,
     table: Option<&PoseTable>,
     centroid: Point3,
-) -> Result<Vec<(StartKind, Pose)>, NoStart> {
+) -> Result<Vec<(StartKind, Option<Pose>)>, NoStart> {
     let mut given: Vec<Option<(StartKind, Pose)>> = vec![None; labels.len()];
     for (kind, source) in [(StartKind::File, table), (StartKind::Edit, edits)] {
         for row in source.into_iter().flat_map(|t| t.of(trial, body)) {
@@ -89,6 +89,7 @@ pub fn starts_of(
         .into_iter()
         .enumerate()
         .filter_map(|(i, start)| start.or_else(|| between(i).map(|pose| (StartKind::Interpolated, pose))))
+        .map(|(kind, pose)| (kind, Some(pose)))
         .collect())
 }
 
@@ -139,8 +140,8 @@ mod tests {
         PoseTable::parse(Path::new("starts.csv"), format!("{HEADER}{rows}").as_bytes()).unwrap()
     }
 
-    fn x(starts: &[(StartKind, Pose)]) -> Vec<(&str, f64)> {
-        starts.iter().map(|(k, p)| (k.word(), p.translation().x)).collect()
+    fn x(starts: &[(StartKind, Option<Pose>)]) -> Vec<(&str, f64)> {
+        starts.iter().map(|(k, p)| (k.word(), p.unwrap().translation().x)).collect()
     }
 
     #[test]

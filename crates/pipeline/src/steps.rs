@@ -5,7 +5,9 @@
 //! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies. Those of slices are in
 //! [`crate::slices`], those of models in [`crate::models`].
 
-use biplane_artifact::{Artifact, Calibration, Contour, Curves, EditedContour, Match, ModelMesh, Picture};
+use biplane_artifact::{
+    Artifact, CalibrationUncertainty, Contour, Curves, EditedContour, Match, ModelMesh, Picture,
+};
 use biplane_contour::{ContourInputs, ContourOf};
 use biplane_optimisation::{MatchBody, MatchInputs};
 use biplane_segmentation::{Segment, SegmentInputs, Trace, TraceInputs};
@@ -14,6 +16,7 @@ use biplane_stage::{
     StoreError, Stored,
 };
 
+use crate::calibrate::Calibrated;
 use crate::edits::{self, Drawn};
 use crate::models::BodyModel;
 use crate::overlay::{Overlay, OverlayInputs};
@@ -107,8 +110,8 @@ impl ItemError {
 pub struct Steps<'a> {
     /// The study.
     pub prepared: &'a Prepared,
-    /// One a view; none as long as they are not known.
-    pub calibrations: &'a [Hashed<Calibration>],
+    /// The fluoroscopes; without calibrations as long as they are not known.
+    pub calibrated: &'a Calibrated,
     /// One a body; `None` where its model is not there, or not known yet.
     pub models: &'a [Option<BodyModel>],
     /// Its store.
@@ -144,7 +147,7 @@ impl Steps<'_> {
             self.prepared.index.frame(&source.path, source.index_in_file, || self.prepared.read(source));
         let facts = facts.map_err(ItemError::of)?;
         let (view, name) = self.view(job, slot);
-        let expected = self.calibrations.get(view).map_or(facts.size, |c| c.size);
+        let expected = self.calibrated.calibrations.get(view).map_or(facts.size, |c| c.size);
         if facts.size != expected {
             let [found, expected] = [facts.size, expected].map(|[w, h]| format!("{w} x {h}"));
             let calibration = match &self.prepared.study.views[view].source {
@@ -302,7 +305,7 @@ impl Steps<'_> {
     ) -> Result<ContourInputs<Promised>, ItemError> {
         Ok(ContourInputs {
             curves: curves.promise(),
-            calibration: self.calibrations[self.view(job, slot).0].promise(),
+            calibration: self.calibrated.calibrations[self.view(job, slot).0].promise(),
             model: self.model(job.bodies[place].0)?.promise(),
             matched,
         })
@@ -322,7 +325,7 @@ impl Steps<'_> {
     ) -> Result<ContourInputs, String> {
         Ok(ContourInputs {
             curves: read_stored(self.store, curves)?,
-            calibration: self.calibrations[self.view(job, slot).0].clone(),
+            calibration: self.calibrated.calibrations[self.view(job, slot).0].clone(),
             model: self.load_model(job.bodies[place].0)?,
             matched: matched.clone(),
         })
@@ -371,6 +374,16 @@ impl Steps<'_> {
         self.model(body).map_err(|e| e.to_string())?.load()
     }
 
+    /// How sure the calibrations of a trial are, if anything is known of it.
+    fn uncertainty(&self, job: &Job) -> Vec<Hashed<CalibrationUncertainty>> {
+        self.calibrated
+            .uncertainties
+            .get(job.trial)
+            .iter()
+            .filter_map(|known| known.as_ref().cloned())
+            .collect()
+    }
+
     fn match_promised(
         &self,
         job: &Job,
@@ -381,10 +394,33 @@ impl Steps<'_> {
         Ok(MatchInputs {
             curves: curves.iter().map(Stored::promise).collect(),
             calibrations: (0..curves.len())
-                .map(|slot| self.calibrations[self.view(job, slot).0].promise())
+                .map(|slot| self.calibrated.calibrations[self.view(job, slot).0].promise())
                 .collect(),
             model: self.model(*body)?.promise(),
-            start: start.promise(),
+            start: start.iter().map(Hashed::promise).collect(),
+            calibration_uncertainty: self.uncertainty(job).iter().map(Hashed::promise).collect(),
+        })
+    }
+
+    /// All that a body is matched by.
+    ///
+    /// # Errors
+    /// The curves or the mesh cannot be read any more.
+    pub fn match_inputs(
+        &self,
+        job: &Job,
+        place: usize,
+        curves: &[Stored<Curves>],
+    ) -> Result<MatchInputs, String> {
+        let (body, _, start) = &job.bodies[place];
+        Ok(MatchInputs {
+            curves: curves.iter().map(|c| read_stored(self.store, c)).collect::<Result<_, _>>()?,
+            calibrations: (0..curves.len())
+                .map(|slot| self.calibrated.calibrations[self.view(job, slot).0].clone())
+                .collect(),
+            model: self.load_model(*body)?,
+            start: start.iter().cloned().collect(),
+            calibration_uncertainty: self.uncertainty(job),
         })
     }
 
@@ -393,17 +429,8 @@ impl Steps<'_> {
     /// # Errors
     /// The stage failed, or the store did.
     pub fn matching(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> Done<Hashed<Match>> {
-        let (body, _, start) = &job.bodies[place];
-        let load = || -> Result<MatchInputs, String> {
-            Ok(MatchInputs {
-                curves: curves.iter().map(|c| read_stored(self.store, c)).collect::<Result<_, _>>()?,
-                calibrations: (0..curves.len())
-                    .map(|slot| self.calibrations[self.view(job, slot).0].clone())
-                    .collect(),
-                model: self.load_model(*body)?,
-                start: start.clone(),
-            })
-        };
+        let body = &job.bodies[place].0;
+        let load = || self.match_inputs(job, place, curves);
         let promised = self.match_promised(job, place, curves)?;
         let item = self.item(job, &self.prepared.study.bodies[*body].name);
         let done = self
@@ -423,7 +450,7 @@ impl Steps<'_> {
         let models = job.bodies.iter().map(|(body, ..)| self.model(*body).map(BodyModel::promise));
         Ok(OverlayInputs {
             frame: facts.promise(),
-            calibration: self.calibrations[self.view(job, slot).0].promise(),
+            calibration: self.calibrated.calibrations[self.view(job, slot).0].promise(),
             models: models.collect::<Result<_, _>>()?,
             matches: matches.to_vec(),
         })
@@ -440,7 +467,7 @@ impl Steps<'_> {
             let models = job.bodies.iter().map(|(body, ..)| self.load_model(*body));
             Ok(OverlayInputs {
                 frame: Hashed::new(self.prepared.read(&job.pictures[slot]).map_err(|e| e.to_string())?),
-                calibration: self.calibrations[view].clone(),
+                calibration: self.calibrated.calibrations[view].clone(),
                 models: models.collect::<Result<_, _>>()?,
                 matches: matches.to_vec(),
             })

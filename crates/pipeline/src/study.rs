@@ -13,7 +13,7 @@ use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
 use biplane_label_surface::LabelSurfaceParams;
 use biplane_lofting::LoftParams;
-use biplane_optimisation::{MatchError, MatchParams};
+use biplane_optimisation::{MatchError, MatchParams, Method};
 use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentError, SegmentParams, TraceError, TraceParams};
 use biplane_slices::SlicesParams;
@@ -21,7 +21,7 @@ use biplane_spots::{Look, SpotError, SpotSettings};
 
 use crate::config::{
     BeadsSection, BodySection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin,
-    PairBy, PipelineFile, PlateSection, SlicesSection, TrialSection, Units,
+    PairBy, PipelineFile, PlateSection, SlicesSection, StatedUncertainty, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
 use crate::models::LANDMARKS;
@@ -91,6 +91,8 @@ pub enum ViewSource {
         pixel_origin: Origin,
         /// Its distortion table, if its pictures are not corrected.
         distortion: Option<PathBuf>,
+        /// How sure it is, if a person says so.
+        uncertainty: Option<StatedUncertainty>,
     },
     /// Raw calibration pictures.
     Pictures {
@@ -248,6 +250,11 @@ pub enum StudyError {
 }
 
 impl Study {
+    /// Whether a body without a start is looked for.
+    pub fn looks_anywhere(&self) -> bool {
+        self.matching.anywhere && self.matching.method == Method::Rim
+    }
+
     /// Where a person's own work is read from; a run never writes there.
     pub fn edits(&self) -> PathBuf {
         self.root.join("edits")
@@ -326,7 +333,8 @@ impl Study {
         if let Err(error) = file.matching.check() {
             let key = match &error {
                 MatchError::Parameter { name, .. } => Some(*name),
-                MatchError::Views { .. } | MatchError::Cancelled => None,
+                MatchError::Optimiser { .. } => Some("search.optimiser"),
+                MatchError::Views { .. } | MatchError::NoStart | MatchError::Cancelled => None,
             };
             check.list.push(parameter(&text, "match", key, &error.to_string()));
         }
@@ -495,6 +503,7 @@ impl Check {
         // The first view that has bead pictures, and how many.
         let mut placings: Option<(String, usize)> = None;
         let mut kinds = [None, None];
+        let mut stated = None;
         for (name, section) in sections.0 {
             let FluoroscopeSection {
                 beads: pictures,
@@ -504,8 +513,12 @@ impl Check {
                 pixel_origin,
                 distortion,
                 mask,
+                uncertainty,
             } = section;
             let mask = mask.map(|m| self.file(&m, "mask"));
+            if let Some(uncertainty) = &uncertainty {
+                stated.get_or_insert((name.get_ref().clone(), uncertainty.span()));
+            }
             kinds[usize::from(pictures.is_some())].get_or_insert_with(|| name.clone());
             if let Some(plated) = on_plate.as_ref().filter(|_| !plate) {
                 let problem = Problem::at(plated.span(), "it is not said what this plate is");
@@ -525,6 +538,7 @@ impl Check {
                         calibration: self.file(&calibration, "calibration"),
                         pixel_origin,
                         distortion: distortion.map(|d| self.file(&d, "distortion table")),
+                        uncertainty: uncertainty.and_then(|u| self.uncertainty(&u)),
                     })
                 }
                 (None, Some(OneOrMore(pictures))) => {
@@ -541,6 +555,11 @@ impl Check {
                             Problem::at(first, format!("{found} picture(s) of beads, but fluoroscope {other} has {count}"))
                                 .help("each placing of the frame needs a picture of every fluoroscope, in the same order"),
                         );
+                    }
+                    if let Some(stated) = uncertainty {
+                        let problem =
+                            Problem::at(stated.span(), "the beads tell how sure this fluoroscope is");
+                        self.list.push(problem.help("remove `uncertainty`"));
                     }
                     let beads = pictures.iter().map(|p| self.file(p, "picture of beads")).collect();
                     let correction = self.correction(&name, on_plate, distortion, pixel_mm);
@@ -564,6 +583,12 @@ impl Check {
             };
             views.extend(source.map(|source| View { name: name.into_inner(), source, mask }));
         }
+        let unsaid = |view: &&View| matches!(view.source, ViewSource::File { uncertainty: None, .. });
+        if let (Some((said, span)), Some(other)) = (stated, views.iter().find(unsaid)) {
+            let text = format!("it is said how sure {said} is, but not how sure {} is", other.name);
+            let problem = Problem::at(span, text);
+            self.list.push(problem.help("give `uncertainty` of every fluoroscope, or of none"));
+        }
         if let [Some(file), Some(pictures)] = &kinds {
             self.list.push(
                 Problem::at(
@@ -576,6 +601,19 @@ impl Check {
             );
         }
         views
+    }
+
+    fn uncertainty(&mut self, stated: &toml::Spanned<StatedUncertainty>) -> Option<StatedUncertainty> {
+        let StatedUncertainty { source_mm, detector_mm, pixel_mm } = *stated.get_ref();
+        let deviation = |mm: f64| mm.is_finite() && mm >= 0.0;
+        if deviation(source_mm) && deviation(detector_mm) && pixel_mm.is_finite() && pixel_mm > 0.0 {
+            return Some(*stated.get_ref());
+        }
+        self.list.push(
+            Problem::at(stated.span(), "these standard deviations cannot be")
+                .help("source_mm and detector_mm are 0 or more, pixel_mm is the side of a pixel on the detector, all mm"),
+        );
+        None
     }
 
     fn correction(

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use biplane_artifact::Verdict;
+
 use crate::outcome::Outcome;
 use crate::study::Study;
 use crate::tables::TableError;
@@ -20,7 +22,7 @@ pub struct SummaryRow {
     pub body: String,
     /// Root mean square over the views, mm and px.
     pub fit: Option<[f64; 2]>,
-    /// `good`, `doubtful` or `failed`.
+    /// `good`, `doubtful`, `ambiguous` or `failed`.
     pub verdict: String,
     /// Why it is not good.
     pub reason: String,
@@ -89,6 +91,15 @@ pub fn of_file(path: &Path) -> Result<Vec<SummaryRow>, TableError> {
     Ok(rows)
 }
 
+/// All verdicts, as they are counted.
+pub const VERDICTS: [Verdict; 4] = [Verdict::Good, Verdict::Doubtful, Verdict::Ambiguous, Verdict::Failed];
+
+/// How many there are of each verdict; ambiguous ones only where there are any.
+pub fn counts(of: [usize; 4]) -> String {
+    let shown = VERDICTS.iter().zip(of).filter(|(verdict, n)| **verdict != Verdict::Ambiguous || *n > 0);
+    shown.map(|(verdict, n)| format!("{n} {}", verdict.word())).collect::<Vec<_>>().join(", ")
+}
+
 /// The table as text: every row if they are few, else counts and the rows that are not good.
 pub fn table(rows: &[SummaryRow]) -> String {
     let mut out = String::new();
@@ -110,12 +121,20 @@ pub fn table(rows: &[SummaryRow]) -> String {
                 .collect();
             fits.sort_by(f64::total_cmp);
             let median = fits.get(fits.len() / 2).map_or(String::new(), |f| format!("{f:.3}"));
-            vec![(*trial).to_owned(), (*body).to_owned(), of("good"), of("doubtful"), of("failed"), median]
+            vec![
+                (*trial).to_owned(),
+                (*body).to_owned(),
+                of("good"),
+                of("doubtful"),
+                of("ambiguous"),
+                of("failed"),
+                median,
+            ]
         });
         out += &aligned(
-            &["trial", "body", "good", "doubtful", "failed", "median fit mm"],
+            &["trial", "body", "good", "doubtful", "ambiguous", "failed", "median fit mm"],
             counts,
-            &[2, 3, 4, 5],
+            &[2, 3, 4, 5, 6],
         );
         shown.retain(|r| r.verdict != "good");
         if shown.is_empty() {
@@ -194,10 +213,16 @@ mod tests {
     }
 
     #[test]
+    fn ambiguous_ones_are_counted_where_there_are_any() {
+        assert_eq!(counts([3, 1, 0, 2]), "3 good, 1 doubtful, 2 failed");
+        assert_eq!(counts([3, 1, 4, 2]), "3 good, 1 doubtful, 4 ambiguous, 2 failed");
+    }
+
+    #[test]
     fn many_rows_are_counted_and_the_good_ones_left_out() {
         let rows: Vec<_> = (0..50).map(|i| row(i, if i == 31 { "doubtful" } else { "good" })).collect();
         let text = table(&rows);
-        assert!(text.contains("lunge  femur    49         1       0          0.100"), "{text}");
+        assert!(text.contains("lunge  femur    49         1          0       0          0.100"), "{text}");
         assert!(text.contains("31") && !text.contains("32"), "{text}");
     }
 }

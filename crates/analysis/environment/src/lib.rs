@@ -24,5 +24,5 @@ mod view;
 
 pub use error::EnvironmentError;
 pub use find::find_environment;
-pub use region::{SourceRegion, covariance_of_point, pixel_by_parameters, source_covariance, source_region};
+pub use region::{SourceRegion, covariance_of_point, source_covariance, source_region};
 pub use stage::{EnvironmentInputs, EnvironmentParams, FindEnvironment};

@@ -2,7 +2,7 @@
 
 use biplane_artifact::{Environment, ViewEnvironment};
 use biplane_geometry::{Point2, Point3, Vector3};
-use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix};
+use nalgebra::{DMatrix, Matrix3, Rotation3};
 
 use crate::view::{VIEW, View};
 
@@ -66,18 +66,6 @@ pub fn covariance_of_point(environment: &Environment, point: &Point3, sigma_px: 
     let of_calibration: DMatrix<f64> = &moved * all * moved.transpose();
     let of_calibration: Matrix3<f64> = of_calibration.fixed_view::<3, 3>(0, 0).into_owned();
     Some(spread * (sigma_px * sigma_px) + of_calibration)
-}
-
-/// Derivative of the ideal pixel of a laboratory point (mm) by the nine parameters of a view, in the order of
-/// [`Environment::covariance`]: px/mm and px/rad. None where the point is not in front of the source.
-pub fn pixel_by_parameters(view: &ViewEnvironment, point: &Point3) -> Option<SMatrix<f64, 2, VIEW>> {
-    let mut derivative = view_of(view).shadow_with_derivatives(point, 0.0)?.by_view;
-    let [x, y, along] = [view.along_x, view.along_y, view.centre].map(Vector3::from);
-    if x.cross(&y).dot(&(along - Vector3::from(view.source))) < 0.0 {
-        // A mirrored picture counts x the other way.
-        derivative.row_mut(0).neg_mut();
-    }
-    Some(derivative)
 }
 
 /// The stored covariance as a matrix, if it has nine rows and columns a view.

@@ -8,9 +8,11 @@
 //! ray, is decided exactly, by floating point where its error bound allows and by exact expansions where not. **Not
 //! guaranteed:** anything for coordinates beyond 1e100 mm or differences below 1e-100 mm.
 
+mod beam;
 mod check;
 mod closest;
 mod crossing;
+mod cut_end;
 mod distances;
 mod edges;
 mod farthest;
@@ -22,6 +24,7 @@ mod tree;
 
 pub use check::MeshCheck;
 pub use closest::Closest;
+pub use cut_end::cut_ends;
 pub use distances::{Spread, distances, spread_points};
 pub use edges::Edges;
 pub use farthest::{Farthest, farthest};

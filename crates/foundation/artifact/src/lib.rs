@@ -25,7 +25,7 @@ mod volume;
 
 pub use body_axes::{AxesFeature, AxesSource, BodyAxes, BodyKind, Landmark, Landmarks, Side};
 pub use bone_surface::{BoneSurface, SurfaceFault, SurfaceReport};
-pub use calibration::{Calibration, DistortionTable, PixelOrigin};
+pub use calibration::{Calibration, CalibrationUncertainty, DistortionTable, PixelOrigin};
 pub use content::{Artifact, Content, ContentHash, ContentHasher, DecodeError};
 pub use contour::{Contour, ContourPiece, EditedContour, EditedPiece};
 pub use curves::Curves;
@@ -34,7 +34,7 @@ pub use environment::{
     Bead, BeadClick, BeadClicks, BeadList, Detector, Environment, SeenBead, TriangulatedBead, ViewEnvironment,
 };
 pub use frame::Frame;
-pub use matched::{Match, PoseRecord, Verdict, ViewFit};
+pub use matched::{Alternative, Match, PoseRecord, StartsTried, Verdict, ViewFit};
 pub use model::{ModelMesh, Start};
 pub use picture::Picture;
 pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};

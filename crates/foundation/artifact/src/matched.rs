@@ -14,6 +14,8 @@ pub enum Verdict {
     Good,
     /// Fits, but something speaks against it; look at its overlay.
     Doubtful,
+    /// Another pose fits as well, and the pictures cannot tell which is right; a start near the right one can.
+    Ambiguous,
     /// Does not fit; the pose is only where the search ended.
     Failed,
 }
@@ -24,6 +26,7 @@ impl Verdict {
         match self {
             Self::Good => "good",
             Self::Doubtful => "doubtful",
+            Self::Ambiguous => "ambiguous",
             Self::Failed => "failed",
         }
     }
@@ -72,6 +75,27 @@ pub struct ViewFit {
     pub inset_px: f64,
 }
 
+/// What the starts of a search led to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StartsTried {
+    /// Starts from which the search was run.
+    pub tried: u32,
+    /// Those from which it came to rest.
+    pub converged: u32,
+    /// Sample standard deviation of the poses that these came to rest at, in the order of [`Match::covariance`] (mm, rad); none
+    /// for fewer than two.
+    pub spread: Option<[f64; 6]>,
+}
+
+/// A pose beside the one that was chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// `world_from_model`.
+    pub pose: PoseRecord,
+    /// As [`Match::objective`].
+    pub objective: f64,
+}
+
 /// One body in one frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Match {
@@ -83,9 +107,23 @@ pub struct Match {
     pub reason: String,
     /// One a view, in the order of the views.
     pub views: Vec<ViewFit>,
+    /// By what poses were compared at the end; of several the least is the answer. With `method = "rim"` it is 1 less the share of the
+    /// outline on the picture that fits its edges well, mean over the views, no unit; with `"bingham2006"` the thesis's Eq. 3.6: the
+    /// distance of outline from contour, mean in each view, sum over the views, mm.
+    pub objective: f64,
     /// Covariance of the pose, rows: translation x, y, z (mm), then rotation x, y, z (rad), in laboratory axes, at the
-    /// mesh's area centroid. From the residuals of the outline alone: a wrong calibration or mesh is not in it.
+    /// mesh's area centroid. From the residuals of the outline, and [`Self::calibration_covariance`] where that is known; a wrong
+    /// mesh is not in it. Numbers are immense where the edges do not hold every motion.
     pub covariance: [[f64; 6]; 6],
+    /// The part of [`Self::covariance`] that the calibration's uncertainty brings, the same for all frames of a study in
+    /// which the body stands alike; none where nothing is known of it.
+    pub calibration_covariance: Option<[[f64; 6]; 6]>,
+    /// Half-widths of the intervals that hold each of the six with a probability of 95 %, mm and rad, in the order of the covariance.
+    pub interval_95: [f64; 6],
+    /// What the starts led to.
+    pub starts: StartsTried,
+    /// Another pose that fits as well, where there is one.
+    pub alternative: Option<Alternative>,
     /// Steps of the optimiser, all starts together.
     pub iterations: u32,
 }
@@ -93,18 +131,28 @@ pub struct Match {
 impl Match {
     /// Standard deviation of the centroid's position, mm: root of the sum over the three axes.
     pub fn translation_sigma_mm(&self) -> f64 {
-        (0..3).map(|i| self.covariance[i][i]).sum::<f64>().sqrt()
+        sigmas(&self.covariance)[0]
     }
 
     /// Standard deviation of the rotation, rad: root of the sum over the three axes.
     pub fn rotation_sigma_rad(&self) -> f64 {
-        (3..6).map(|i| self.covariance[i][i]).sum::<f64>().sqrt()
+        sigmas(&self.covariance)[1]
     }
+
+    /// What of the two the calibration brings, mm and rad, where that is known.
+    pub fn calibration_sigmas(&self) -> Option<[f64; 2]> {
+        self.calibration_covariance.as_ref().map(sigmas)
+    }
+}
+
+/// Roots of the sums of the variances of position (mm) and of rotation (rad).
+fn sigmas(covariance: &[[f64; 6]; 6]) -> [f64; 2] {
+    [0, 3].map(|from| (from..from + 3).map(|i| covariance[i][i]).sum::<f64>().sqrt())
 }
 
 impl Content for Match {
     const KIND: &'static str = "match";
-    const SCHEMA: u32 = 1;
+    const SCHEMA: u32 = 2;
     fn content_hash(&self) -> ContentHash {
         hash_encoded::<Self>(&self.encode())
     }
@@ -127,6 +175,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn verdicts_go_from_good_to_failed() {
+        let order = [Verdict::Good, Verdict::Doubtful, Verdict::Ambiguous, Verdict::Failed];
+        assert!(order.is_sorted());
+        assert_eq!(order.map(Verdict::word), ["good", "doubtful", "ambiguous", "failed"]);
+        let stored = order.map(|v| serde_json::to_string(&v).unwrap());
+        assert_eq!(stored, order.map(|v| format!("\"{}\"", v.word())), "files have the same words");
+    }
+
+    #[test]
     fn round_trip_keeps_every_bit() {
         let pose = Pose::new(
             nalgebra::UnitQuaternion::from_euler_angles(0.1, 0.2, 3.1),
@@ -137,11 +194,19 @@ mod tests {
             verdict: Verdict::Doubtful,
             reason: "view B: 41 % of the outline found".to_owned(),
             views: vec![],
-            covariance: [[1.0 / 7.0; 6]; 6],
+            objective: 0.1 + 0.2,
+            covariance: [[f64::MAX; 6]; 6],
+            calibration_covariance: Some([[1.0 / 7.0; 6]; 6]),
+            interval_95: [1.0 / 11.0; 6],
+            starts: StartsTried { tried: 13, converged: 2, spread: Some([1e-9 / 3.0; 6]) },
+            alternative: Some(Alternative { pose: PoseRecord::from(pose), objective: 0.3 }),
             iterations: 12,
         };
         assert_eq!(Match::decode(&value.encode()), Ok(value.clone()));
         assert!(Pose::from(value.pose).rotation().angle_to(&pose.rotation()) < 1e-9);
         assert!(Match::decode(b"{}").is_err());
+        let single = Match { covariance: [[3.0; 6]; 6], ..value };
+        assert_eq!((single.translation_sigma_mm(), single.rotation_sigma_rad()), (3.0, 3.0));
+        assert_eq!(single.calibration_sigmas(), Some([(3.0f64 / 7.0).sqrt(); 2]));
     }
 }

@@ -5,10 +5,11 @@
 //! pixels written into `M`. Ideal pixels are those of a picture without distortion; [`Distortion`] maps between them and
 //! the pixels that were recorded, both ways. Pixels have the centre of the first one at (0, 0), x right, y down.
 //!
-//! Guaranteed: the derivative of [`Fluoroscope::project_with_derivative`] is exact (a test compares it with finite
-//! differences), and `Distortion::recorded` undoes `Distortion::ideal` to 1e-9 px wherever it gives an answer.
+//! Guaranteed: the derivatives of [`Fluoroscope::project_with_derivative`] (by the point) and of [`Fluoroscope::pixel_by_placement`]
+//! (by where source and detector stand) are exact (tests compare them with finite differences), and `Distortion::recorded` undoes `Distortion::ideal` to 1e-9 px wherever it gives an answer.
 
 mod distortion;
+mod placement;
 mod projection;
 
 pub use distortion::Distortion;

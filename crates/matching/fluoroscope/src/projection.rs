@@ -70,6 +70,11 @@ impl Fluoroscope {
         self.matrix.determinant() < 0.0
     }
 
+    /// Distance of the source from the detector in pixels; the geometric mean where pixels are not square.
+    pub(crate) fn focal_px(&self) -> f64 {
+        self.focal_px
+    }
+
     /// Size of one pixel in a plane at `depth` mm, mm.
     pub fn mm_per_px(&self, depth: f64) -> f64 {
         depth / self.focal_px

@@ -24,7 +24,6 @@
 //! weights: a curve that is not the body's attracts, a part of the outline that the image does not show pulls the pose away.
 
 mod answer;
-mod bfgs;
 mod contour;
 mod objective;
 
@@ -33,6 +32,7 @@ pub use contour::Contour;
 pub use objective::BinghamView;
 
 use biplane_geometry::{Point3, Pose};
+use biplane_optimiser::{Minimum, Optimiser, Search};
 use biplane_outline::GridOutline;
 use nalgebra::Vector6;
 use rand::SeedableRng;
@@ -220,15 +220,24 @@ pub fn descend(
     let from = objective::variables(start, origin);
     let (mm, deg) = (params.bound_mm, params.bound_deg);
     let bound = Vector6::new(mm, mm, mm, deg, deg, deg);
-    let search = bfgs::Search {
+    let search = Search {
         low: from - bound,
         high: from + bound,
         first_difference: params.first_difference_mm_deg,
         last_difference: params.last_difference_mm_deg,
         tolerance: params.tolerance,
         calls: params.calls,
+        // Neither a simplex nor a draw.
+        reach: 0.0,
+        seed: 0,
     };
-    let found = bfgs::minimise(|at| objective.at(at), &from, &search);
+    let mut function = |at: &Vector6<f64>| objective.at(at);
+    let found = Optimiser::Bfgs.minimise(&mut function, &from, &search).unwrap_or(Minimum {
+        at: from,
+        value: f64::INFINITY,
+        calls: 0,
+        converged: false,
+    });
     Descent {
         pose: objective::pose(&found.at, origin),
         variables: found.at.into(),

@@ -9,9 +9,10 @@
 //! **Of a pose.** With outlines `r(pose, c) = 0` and calibration parameters `c` of covariance `S`, the pose that a wrong `c` gives is
 //! off by `-(J' W J)^-1 J' W B dc`, `J` and `B` being the derivatives of the outlines along their normals by pose and by `c`.
 
-use biplane_geometry::{Point3, Pose};
+use biplane_artifact::CalibrationUncertainty;
+use biplane_geometry::Pose;
 use biplane_outline::{Outline, RimMesh, Sampling};
-use nalgebra::{DMatrix, Matrix2xX, Matrix6, RowDVector, SMatrix, SVector, Vector6};
+use nalgebra::{DMatrix, Matrix6, RowSVector, SMatrix, SVector, Vector6};
 
 use crate::View;
 use crate::refine::{
@@ -23,6 +24,11 @@ use crate::refine::{
 const UNKNOWN: usize = 9;
 /// Times the step is weighed anew.
 const REWEIGHED: usize = 12;
+
+/// Distance of the outline's samples for the calibration's part, px: it changes slowly along an outline.
+const STEP_PX: f64 = 4.0;
+/// Least cosine between the outline's normal and the direction of its edge: 25 degrees, as at the end of a match.
+const FOUND_COSINE: f64 = 0.906;
 
 /// How far two views disagree about where a body is, along the normal of the plane through it and both sources.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,53 +106,70 @@ pub fn disagreement(
     (found.mm.is_finite() && found.sigma_mm.is_finite()).then_some(found)
 }
 
-/// Covariance of a pose (as [`biplane_artifact::Match`] orders it, about the body's centroid) that a calibration's covariance brings,
-/// for outlines that are seen whole; `None` where they do not hold the pose.
-///
-/// `derivative(view, point)` gives the derivative of the ideal pixel of a laboratory point in a view by all calibration parameters
-/// (2 x n), in the order of `covariance` (n x n).
+/// Covariance of a pose that was matched (as [`biplane_artifact::Match`] orders it, about the body's centroid) that the uncertainty of
+/// the views' places brings, by the outline points that found their edge; `None` where these do not hold the pose, or `uncertainty` is not
+/// of these views.
 pub fn pose_covariance_of_calibration(
     mesh: &RimMesh,
     views: &[View],
     pose: &Pose,
-    covariance: &DMatrix<f64>,
-    derivative: impl Fn(usize, &Point3) -> Option<Matrix2xX<f64>>,
+    uncertainty: &CalibrationUncertainty,
+    params: &RefineParams,
 ) -> Option<Matrix6<f64>> {
-    let parameters = covariance.nrows();
+    const VIEW: usize = CalibrationUncertainty::PARAMETERS;
+    let rows = &uncertainty.covariance;
+    let parameters = VIEW * views.len();
+    let fits = uncertainty.source_to_detector_mm.len() == views.len()
+        && rows.len() == parameters
+        && rows.iter().all(|row| row.len() == parameters);
+    if !fits {
+        return None;
+    }
     let centre = pose.transform(mesh.centroid());
     let mut outline = Outline::new();
     let mut normal = Matrix6::zeros();
     let mut mixed = DMatrix::<f64>::zeros(6, parameters);
-    for (number, view) in views.iter().enumerate() {
-        outline.trace(mesh, pose, &view.fluoroscope, Sampling { step_px: 4.0 });
+    for (number, (view, distance)) in views.iter().zip(&uncertainty.source_to_detector_mm).enumerate() {
+        outline.trace(mesh, pose, &view.fluoroscope, Sampling { step_px: STEP_PX });
         // The inset of a view takes up what is common to its outline.
-        let (mut sum, mut by_pose, mut by_parameters) =
-            (0.0, Vector6::zeros(), RowDVector::<f64>::zeros(parameters));
+        let (mut sum, mut by_pose, mut by_view) = (0.0, Vector6::zeros(), RowSVector::<f64, VIEW>::zeros());
+        let mut own_mixed = SMatrix::<f64, 6, VIEW>::zeros();
         for point in outline.points() {
-            if !view.fluoroscope.on_image(&point.pixel, 2.0) {
+            let direction = point.normal * params.contrast;
+            if !view.fluoroscope.on_image(&point.pixel, 2.0)
+                || view
+                    .edges
+                    .nearest(&point.pixel, &direction, params.final_search_px, FOUND_COSINE)
+                    .is_none()
+            {
                 continue;
             }
-            let Some((_, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else {
+            let Some((projection, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else {
                 continue;
             };
-            let Some(by_calibration) = derivative(number, &point.world) else { continue };
+            let Some(by_placement) = view.fluoroscope.pixel_by_placement(&point.world, *distance) else {
+                continue;
+            };
             let gradient = by_point.transpose() * point.normal;
             let turn = (point.world - centre).cross(&gradient);
             let own = Vector6::new(gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z);
-            let moved = by_calibration.row(0) * point.normal.x + by_calibration.row(1) * point.normal.y;
-            let weight = point.length_px;
+            let moved = point.normal.transpose() * by_placement;
+            // As the match weighs: by the squared residual in mm.
+            let weight = point.length_px * view.fluoroscope.mm_per_px(projection.depth).powi(2);
             normal += own * own.transpose() * weight;
-            mixed += own * &moved * weight;
+            own_mixed += own * moved * weight;
             sum += weight;
             by_pose += own * weight;
-            by_parameters += &moved * weight;
+            by_view += moved * weight;
         }
-        if sum > 0.0 {
+        if sum > 0.0 && params.inset_px > 0.0 {
             normal -= by_pose * by_pose.transpose() / sum;
-            mixed -= by_pose * by_parameters / sum;
+            own_mixed -= by_pose * by_view / sum;
         }
+        mixed.fixed_view_mut::<6, VIEW>(0, VIEW * number).copy_from(&own_mixed);
     }
     let answer = -(normal.try_inverse()? * mixed);
+    let covariance = DMatrix::from_fn(parameters, parameters, |i, j| rows[i][j]);
     let found = &answer * covariance * answer.transpose();
     let found = Matrix6::from_fn(|i, j| found[(i, j)]);
     found.iter().all(|v| v.is_finite()).then_some(found)

@@ -10,21 +10,28 @@
 //! rim point held fixed to the body has the same normal speed as the contour, so each residual's derivative is one exact
 //! row of six.
 //!
-//! **Starts.** The start given; where its match does not come out good, further ones around it, drawn from a seed.
+//! **Starts.** The start given; where its match does not come out good, further ones around it, drawn from a seed. Where none of them
+//! leads to a good pose, or none is given, those of a library of the body's silhouettes, each; of two poses that fit alike neither is
+//! called good.
 //!
 //! That is `method = "rim"`; `method = "bingham2006"` is the thesis's own, to compare with: grid outline, mean distance and
-//! bounded BFGS ([`descend`]).
+//! bounded BFGS ([`descend`]); `method = "search"` is any objective by any optimiser ([`SearchParams`]).
 //!
 //! **Guaranteed:** a result depends on inputs and parameters alone. **Not guaranteed:** that the best basin was found; the
 //! verdict says what speaks against a pose, from the fit alone.
 
+mod answer;
+mod bias;
 mod bingham;
 mod consistency;
 mod judge;
 mod refine;
+mod search;
 mod stage;
 mod starts;
 
+pub use answer::with_calibration;
+pub use bias::{BiasParams, take_out};
 pub use bingham::{
     BinghamParams, BinghamView, Contour, Descent, best, descend, match_bingham, own_contour, spread,
 };
@@ -32,4 +39,7 @@ pub use biplane_edge_field::EdgeField;
 pub use consistency::{Disagreement, disagreement, pose_covariance_of_calibration};
 pub use judge::{Limits, judge};
 pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};
-pub use stage::{Contrast, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_body};
+pub use search::{Ended, SearchParams, Single, lowest};
+pub use stage::{
+    Contrast, EdgeBias, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_anywhere, match_body,
+};

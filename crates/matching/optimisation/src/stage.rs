@@ -1,17 +1,20 @@
 //! The stage `match`: the curves of a frame's views, their calibrations, a body's mesh and a start in; its pose out.
 
-use biplane_artifact::{Calibration, Curves, Match, ModelMesh, Start, Verdict, ViewFit};
+use biplane_artifact::{Calibration, CalibrationUncertainty, Curves, Match, ModelMesh, Start, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
+use biplane_objective::{Body, DistanceField, Kind};
 use biplane_outline::RimMesh;
-use biplane_stage::{Context, Stage, inputs};
-use nalgebra::Matrix6;
+use biplane_silhouette::SilhouetteLibrary;
+use biplane_stage::{Context, Hashed, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::answer::{answer_of, best_end, with_calibration};
+use crate::search::{SearchParams, match_search, mm_per_px, targets};
 use crate::{
-    BinghamParams, BinghamView, EdgeField, Limits, RefineParams, Refined, View, judge, match_bingham,
-    own_contour, refine, starts,
+    BiasParams, BinghamParams, BinghamView, EdgeField, Limits, RefineParams, Refined, View, judge,
+    match_bingham, own_contour, refine, starts, take_out,
 };
 
 inputs! {
@@ -23,8 +26,10 @@ inputs! {
         calibrations: [Calibration],
         /// The body.
         model: ModelMesh,
-        /// Where to start.
-        start: Start,
+        /// Where to start; empty where nobody says: then starts are looked for anywhere.
+        start: [Start],
+        /// How sure the calibrations are, all together; empty where nothing is known of it.
+        calibration_uncertainty: [CalibrationUncertainty],
     }
 }
 
@@ -46,16 +51,37 @@ pub enum Method {
     Rim,
     /// The thesis's own: outline on a grid, mean distance from the contour, bounded BFGS from ten starts.
     Bingham2006,
+    /// Any objective by any optimiser.
+    Search,
+}
+
+/// What is taken for the distance of edges from the outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum EdgeBias {
+    /// At the end it is predicted from the body's chords behind each rim, with attenuation and blur as the edges tell them.
+    Predicted,
+    /// One inset a view, the same all along the outline.
+    Constant,
+    /// Nothing.
+    None,
 }
 
 /// Steps of a descent with its last search radius at most; most need five to ten.
 const FINAL_STEPS: u32 = 30;
 
+/// Poses that are tried where a body is looked for anywhere.
+const CANDIDATES: usize = 16;
+
+/// Ends nearer than this to the best are the same pose: the centroid's displacement, mm, and the rotation, rad.
+const SAME: (f64, f64) = (0.5, 0.02);
+
 /// How poses are searched and judged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MatchParams {
-    /// How poses are found: `"rim"`, or `"bingham2006"` for the thesis's own method, slower and less sure, to compare with.
+    /// How poses are found: `"rim"`; or, slower and less sure, to compare with: `"bingham2006"`, the thesis's own method, and `"search"`, any
+    /// objective by any optimiser (`[match.search]`).
     pub method: Method,
     /// How far from its start an outline looks for edges, px. As far as starts are wrong, and no farther.
     #[schemars(range(min = 1.0, max = 500.0))]
@@ -67,6 +93,17 @@ pub struct MatchParams {
     /// them, px (1 sigma). It is solved for in each view beside the pose; 0 holds it at zero.
     #[schemars(range(min = 0.0, max = 20.0))]
     pub inset_px: f64,
+    /// How far inside the outline X-rays show the edges of a body: `"predicted"` from its shape, rim by rim, once the pose is nearly found;
+    /// `"constant"` for one inset a view, `"none"` for none at all.
+    pub edge_bias: EdgeBias,
+    /// With `edge_bias = "predicted"`: how much more bodies attenuate X-rays than what they stand in, 1/mm (bone about 0.06, titanium 0.5,
+    /// cobalt-chrome 1.8). Without it, each body's is found from its edges.
+    #[schemars(range(min = 0.001, max = 20.0))]
+    pub attenuation_per_mm: Option<f64>,
+    /// With `edge_bias = "predicted"`: about how much pictures and `smoothing_px` blur edges together, px (1 sigma); how much exactly, is
+    /// found from the edges.
+    #[schemars(range(min = 0.3, max = 2.8))]
+    pub blur_px: f64,
     /// A search ends when a step moves the body by less than this, mm.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub still_mm: f64,
@@ -81,6 +118,9 @@ pub struct MatchParams {
     pub retry_deg: f64,
     /// Seed of the further starts.
     pub seed: u64,
+    /// Whether a body may be looked for anywhere, by the shapes of its shadows: where no start is given, and where none around the
+    /// given one leads to a good pose. Not with `method = "bingham2006"`, which needs a start.
+    pub anywhere: bool,
     /// A pose is good if at least this share of its outline finds an edge in each view. Right poses had 0.81 or more on the
     /// simulated and the real knee, wrong ones (from starts turned by 45 to 180 degrees) up to 0.82, but then an rms of
     /// 0.89 px: it takes both limits, and that of the rotation, to tell them apart.
@@ -99,6 +139,8 @@ pub struct MatchParams {
     pub good_sigma_deg: f64,
     /// Settings of the thesis's own method.
     pub bingham2006: BinghamParams,
+    /// Settings of a search by any objective and optimiser.
+    pub search: SearchParams,
 }
 
 impl Default for MatchParams {
@@ -108,12 +150,16 @@ impl Default for MatchParams {
             search_px: 40.0,
             final_search_px: 3.0,
             inset_px: 1.0,
+            edge_bias: EdgeBias::Predicted,
+            attenuation_per_mm: None,
+            blur_px: 1.6,
             still_mm: 2e-4,
             contrast: Contrast::Dark,
             retries: 12,
             retry_mm: 4.0,
             retry_deg: 4.0,
             seed: 1,
+            anywhere: true,
             good_share: 0.75,
             failed_share: 0.5,
             good_rms_px: 0.75,
@@ -121,6 +167,7 @@ impl Default for MatchParams {
             good_sigma_mm: 0.5,
             good_sigma_deg: 0.75,
             bingham2006: BinghamParams::default(),
+            search: SearchParams::default(),
         }
     }
 }
@@ -148,6 +195,23 @@ pub enum MatchError {
         /// Calibrations.
         calibrations: usize,
     },
+    /// There is no start, and none may be looked for.
+    #[error(
+        "no start pose: give one in edits/poses.csv or in a table named by `starts` of the trial, or let bodies be looked for with \
+         [match] method = \"rim\" and anywhere = true"
+    )]
+    NoStart,
+    /// The optimiser cannot search the objective.
+    #[error(
+        "[match.search] optimiser = \"{optimiser}\" needs derivatives, which objective = \"{objective}\" has not: take another optimiser, or \
+         \"spline_rim\" for an objective"
+    )]
+    Optimiser {
+        /// The objective.
+        objective: &'static str,
+        /// The optimiser.
+        optimiser: &'static str,
+    },
     /// The run was stopped.
     #[error("stopped")]
     Cancelled,
@@ -162,12 +226,16 @@ impl MatchParams {
             search_px,
             final_search_px,
             inset_px,
+            edge_bias: _,
+            attenuation_per_mm,
+            blur_px,
             still_mm,
             contrast: _,
             retries,
             retry_mm,
             retry_deg,
             seed: _,
+            anywhere: _,
             good_share,
             failed_share,
             good_rms_px,
@@ -175,6 +243,7 @@ impl MatchParams {
             good_sigma_mm,
             good_sigma_deg,
             bingham2006,
+            search,
         } = *self;
         let within = |name, value: f64, low: f64, high: f64, expected| {
             if (low..=high).contains(&value) {
@@ -187,6 +256,8 @@ impl MatchParams {
         within("search_px", search_px, 1.0, 500.0, "1 to 500 px")?;
         within("final_search_px", final_search_px, 0.5, 50.0, "0.5 to 50 px")?;
         within("inset_px", inset_px, 0.0, 20.0, "0 to 20 px")?;
+        within("attenuation_per_mm", attenuation_per_mm.unwrap_or(1.0), 0.001, 20.0, "0.001 to 20 per mm")?;
+        within("blur_px", blur_px, 0.3, 2.8, "0.3 to 2.8 px")?;
         within("still_mm", still_mm, 1e-9, 1.0, "1e-9 to 1 mm")?;
         within("retries", retries as f64, 0.0, 1000.0, "0 to 1000")?;
         within("retry_mm", retry_mm, 0.0, 1000.0, "0 to 1000 mm")?;
@@ -197,7 +268,8 @@ impl MatchParams {
         within("failed_rms_px", failed_rms_px, good_rms_px, any, "at least good_rms_px")?;
         within("good_sigma_mm", good_sigma_mm, 0.0, any, "0 or more mm")?;
         within("good_sigma_deg", good_sigma_deg, 0.0, any, "0 or more degrees")?;
-        bingham2006.check()
+        bingham2006.check()?;
+        search.check()
     }
 
     /// How a descent searches.
@@ -209,10 +281,16 @@ impl MatchParams {
                 Contrast::Dark => 1.0,
                 Contrast::Bright => -1.0,
             },
-            inset_px: self.inset_px,
+            inset_px: if self.edge_bias == EdgeBias::None { 0.0 } else { self.inset_px },
             still_mm: self.still_mm,
             most_steps: FINAL_STEPS,
         }
+    }
+
+    /// What is known of the edges' bias, if it is to be predicted.
+    pub fn bias(&self) -> Option<BiasParams> {
+        let params = BiasParams { attenuation_per_mm: self.attenuation_per_mm, blur_px: self.blur_px };
+        (self.edge_bias == EdgeBias::Predicted).then_some(params)
     }
 
     pub(crate) fn limits(&self) -> Limits {
@@ -224,7 +302,7 @@ impl MatchParams {
     }
 }
 
-/// Matches one body, seen in `views` named `names`, from `start`.
+/// Matches one body, seen in `views` named `names`, from `start`, and from starts around it while no match is good.
 ///
 /// # Errors
 /// Only [`MatchError::Cancelled`], when `cancelled` says so between two starts.
@@ -236,48 +314,78 @@ pub fn match_body(
     params: &MatchParams,
     cancelled: impl Fn() -> bool,
 ) -> Result<Match, MatchError> {
-    let search = params.search();
-    let limits = params.limits();
-    let sigma_rad = params.retry_deg.to_radians();
-    let others =
-        starts::around(start, mesh.centroid(), params.retry_mm, sigma_rad, params.seed, params.retries);
-    let mut best: Option<Refined> = None;
-    let mut steps = 0;
-    for from in std::iter::once(*start).chain(others) {
+    match_anywhere(mesh, views, names, Some(start), Vec::new, params, cancelled)
+}
+
+/// As [`match_body`]; where no match from around the start is good, or there is none, also from each of the poses that `anywhere` gives,
+/// and around the best of them.
+///
+/// # Errors
+/// [`MatchError::NoStart`] where there is neither a start nor a pose to begin with; [`MatchError::Cancelled`], when `cancelled` says so
+/// between two starts.
+pub fn match_anywhere(
+    mesh: &RimMesh,
+    views: &[View],
+    names: &[String],
+    start: Option<&Pose>,
+    anywhere: impl FnOnce() -> Vec<Pose>,
+    params: &MatchParams,
+    cancelled: impl Fn() -> bool,
+) -> Result<Match, MatchError> {
+    let (search, limits) = (params.search(), params.limits());
+    let mut ends: Vec<Refined> = Vec::new();
+    let good = |ends: &[Refined]| best_end(ends).is_some_and(|e| judge(e, names, &limits).1 == Verdict::Good);
+    let descend = |from: &Pose, ends: &mut Vec<Refined>| {
         if cancelled() {
             return Err(MatchError::Cancelled);
         }
-        let refined = refine(mesh, views, &from, &search);
-        steps += refined.steps;
-        if best.as_ref().is_none_or(|b| refined.score() > b.score()) {
-            best = Some(refined);
+        ends.push(refine(mesh, views, from, &search));
+        Ok(())
+    };
+    let near = |from: &Pose, ends: &mut Vec<Refined>| {
+        let sigma_rad = params.retry_deg.to_radians();
+        let (mm, seed) = (params.retry_mm, params.seed);
+        for other in starts::around(from, mesh.centroid(), mm, sigma_rad, seed, params.retries) {
+            if good(ends) {
+                break;
+            }
+            descend(&other, ends)?;
         }
-        if best.as_ref().is_some_and(|b| judge(b, names, &limits).1 == Verdict::Good) {
-            break;
+        Ok(())
+    };
+    if let Some(start) = start {
+        descend(start, &mut ends)?;
+        near(start, &mut ends)?;
+    }
+    if !good(&ends) {
+        let before = ends.len();
+        for from in anywhere() {
+            descend(&from, &mut ends)?;
+        }
+        // All are tried, so that two places that cannot be told apart are seen; around the best of them as around a start.
+        if let Some(best) = best_end(&ends[before..]).map(|end| end.pose) {
+            near(&best, &mut ends)?;
         }
     }
-    let Some(best) = best else { return Err(MatchError::Cancelled) };
-    let (fits, verdict, reason) = judge(&best, names, &limits);
-    Ok(answer(&best, fits, verdict, reason, steps))
+    if let Some((bias, best)) = params.bias().zip(best_end(&ends).map(|end| end.pose)) {
+        for end in &mut ends {
+            let away = end.pose.error_against(&best, mesh.centroid());
+            if away.translation_mm < SAME.0 && away.rotation_rad < SAME.1 {
+                *end = take_out(mesh, views, end, &search, &bias).unwrap_or_else(|| end.clone());
+            }
+        }
+    }
+    let steps = ends.iter().map(|end| end.steps).sum();
+    answer_of(&ends, mesh, names, &limits, steps).ok_or(MatchError::NoStart)
 }
 
-/// The answer of a match, as it is stored.
-pub(crate) fn answer(
-    found: &Refined,
-    views: Vec<ViewFit>,
-    verdict: Verdict,
-    reason: String,
-    iterations: u32,
-) -> Match {
-    let covariance = found.covariance.unwrap_or_else(|| Matrix6::from_element(f64::MAX));
-    Match {
-        pose: found.pose.into(),
-        verdict,
-        reason,
-        views,
-        covariance: std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)])),
-        iterations,
-    }
+/// Fluoroscope and edges of each view.
+pub(crate) fn views(inputs: &MatchInputs) -> Vec<View> {
+    let of = |(curves, calibration): (&Hashed<Curves>, &Hashed<Calibration>)| {
+        let fluoroscope = Fluoroscope::from(&**calibration);
+        View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
+    };
+    inputs.curves.iter().zip(&inputs.calibrations).map(of).collect()
 }
 
 /// The stage `match`.
@@ -299,37 +407,56 @@ impl Stage for MatchBody {
             return Err(MatchError::Views { curves, calibrations });
         }
         let mesh = context.prepared(inputs.model.hash(), || RimMesh::new(&inputs.model.0));
-        let views: Vec<View> = inputs
-            .curves
-            .iter()
-            .zip(&inputs.calibrations)
-            .map(|(curves, calibration)| {
-                let fluoroscope = Fluoroscope::from(&**calibration);
-                View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
-            })
-            .collect();
+        let views = views(inputs);
         let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
-        let start = &inputs.start.0;
-        match params.method {
-            Method::Rim => match_body(&mesh, &views, &names, start, params, || context.cancelled()),
+        let start = inputs.start.first().map(|start| &start.0);
+        let found = match params.method {
+            Method::Rim => {
+                let anywhere = || candidates(inputs, &views, params, context);
+                match_anywhere(&mesh, &views, &names, start, anywhere, params, || context.cancelled())
+            }
             Method::Bingham2006 => {
-                let centre = start.transform(mesh.centroid());
+                let start = start.ok_or(MatchError::NoStart)?;
                 let contours: Vec<BinghamView> = inputs
                     .curves
                     .iter()
                     .zip(&views)
                     .map(|(curves, View { fluoroscope, .. })| {
                         let own = own_contour(curves, &mesh, fluoroscope, start, params);
-                        // Millimetres at the depth of the body where it starts; behind the source nothing is seen anyway.
-                        let mm_per_px =
-                            fluoroscope.project(&centre).map_or(1.0, |p| fluoroscope.mm_per_px(p.depth));
-                        BinghamView::new(fluoroscope.clone(), &own, mm_per_px)
+                        BinghamView::new(fluoroscope.clone(), &own, mm_per_px(fluoroscope, &mesh, start))
                     })
                     .collect();
                 let points = inputs.model.0.vertices();
                 let judged = (views.as_slice(), names.as_slice());
                 match_bingham(points, &contours, &mesh, judged, start, params, || context.cancelled())
             }
-        }
+            Method::Search => {
+                let start = start.ok_or(MatchError::NoStart)?;
+                let field = || context.prepared(inputs.model.hash(), || DistanceField::new(&inputs.model.0));
+                let field = (params.search.objective == Kind::InversePoint).then(field);
+                let body = Body { mesh: &inputs.model.0, rim: &mesh, field };
+                let targets = targets(inputs, &mesh, &views, start, params);
+                match_search(&body, &targets, (&views, &names), start, params, || context.cancelled())
+            }
+        }?;
+        Ok(match inputs.calibration_uncertainty.first() {
+            None => found,
+            Some(uncertainty) => with_calibration(found, &mesh, &views, uncertainty, &params.search()),
+        })
     }
+}
+
+/// Poses at which the body may be, by the shapes of its shadows, if it may be looked for.
+fn candidates(inputs: &MatchInputs, views: &[View], params: &MatchParams, context: &Context) -> Vec<Pose> {
+    if !params.anywhere {
+        return Vec::new();
+    }
+    let library = context.prepared(inputs.model.hash(), || SilhouetteLibrary::new(&inputs.model.0));
+    let shadows: Vec<(&Fluoroscope, &Curves)> =
+        views.iter().map(|v| &v.fluoroscope).zip(inputs.curves.iter().map(|c| &**c)).collect();
+    library
+        .starts(&shadows, params.search().contrast, CANDIDATES)
+        .into_iter()
+        .map(|candidate| candidate.pose)
+        .collect()
 }

@@ -221,7 +221,8 @@ fn run(truth: &Pose, start: &Pose, own: BinghamParams) -> Match {
         curves: curves.collect(),
         calibrations: calibrations().into_iter().map(Hashed::new).collect(),
         model: Hashed::new(ModelMesh(mesh)),
-        start: Hashed::new(Start(*start)),
+        start: vec![Hashed::new(Start(*start))],
+        calibration_uncertainty: vec![],
     };
     let params = MatchParams { method: Method::Bingham2006, bingham2006: own, ..MatchParams::default() };
     MatchBody::run(&inputs, &params, &Context::new()).unwrap()
@@ -294,7 +295,8 @@ fn a_run_that_is_stopped_says_so() {
         curves: vec![Hashed::new(Curves::default())],
         calibrations: calibrations().into_iter().take(1).map(Hashed::new).collect(),
         model: Hashed::new(ModelMesh(mesh)),
-        start: Hashed::new(Start(truth())),
+        start: vec![Hashed::new(Start(truth()))],
+        calibration_uncertainty: vec![],
     };
     let params = MatchParams { method: Method::Bingham2006, ..MatchParams::default() };
     assert_eq!(MatchBody::run(&inputs, &params, &context), Err(MatchError::Cancelled));

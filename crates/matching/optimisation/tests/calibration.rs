@@ -3,15 +3,18 @@
 
 #![allow(clippy::unwrap_used)]
 
-use biplane_artifact::Curves;
+use biplane_artifact::{CalibrationUncertainty, Curves};
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{Point3, Pose, Vector3};
+use biplane_geometry::{Pose, Vector3};
 use biplane_optimisation::{
-    EdgeField, MatchParams, View, disagreement, pose_covariance_of_calibration, refine,
+    EdgeField, MatchParams, View, disagreement, match_body, pose_covariance_of_calibration, refine,
+    with_calibration,
 };
 use biplane_outline::RimMesh;
 use biplane_phantom::{Body, TrueFluoroscope, biplane, ideal_outline, mesh};
-use nalgebra::{DMatrix, Matrix2xX, UnitQuaternion};
+use nalgebra::{Matrix6, UnitQuaternion, Vector6};
+use rand::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 struct Scene {
     rim: RimMesh,
@@ -76,6 +79,22 @@ fn one_view_alone_cannot_disagree() {
     assert_eq!(disagreement(&scene.rim, &views[..1], &scene.pose, &search), None);
 }
 
+/// What the uncertainty of the true views' places brings to the pose.
+fn predicted(scene: &Scene, uncertainty: &CalibrationUncertainty) -> Matrix6<f64> {
+    let search = MatchParams::default().search();
+    let pose = scene.matched(&scene.truth);
+    let views = scene.views(&scene.truth);
+    pose_covariance_of_calibration(&scene.rim, &views, &pose, uncertainty, &search).unwrap()
+}
+
+/// How a pose stands off another one, as a covariance orders it.
+fn off(scene: &Scene, pose: &Pose, from: &Pose) -> Vector6<f64> {
+    let centroid = scene.rim.centroid();
+    let moved = pose.transform(centroid) - from.transform(centroid);
+    let turned = (pose.rotation() * from.rotation().inverse()).scaled_axis();
+    Vector6::new(moved.x, moved.y, moved.z, turned.x, turned.y, turned.z)
+}
+
 #[test]
 fn a_pose_moves_with_the_calibration_as_is_predicted() {
     let scene = scene();
@@ -90,28 +109,11 @@ fn a_pose_moves_with_the_calibration_as_is_predicted() {
         believed[view].source += by;
         let error = scene.matched(&believed).error_against(&right, &centroid);
         // One parameter: how far along `by` the source is; with a variance of 1 the covariance is the square of the motion.
-        let derivative = |number: usize, point: &Point3| {
-            let mut all = Matrix2xX::zeros(1);
-            if number == view {
-                let at = |by: Vector3| {
-                    let moved = TrueFluoroscope {
-                        source: scene.truth[view].source + by,
-                        ..scene.truth[view].clone()
-                    };
-                    moved.project(point).map(|(pixel, _)| pixel)
-                };
-                all.set_column(0, &((at(by * 0.01)? - at(by * -0.01)?) / 0.02));
-            }
-            Some(all)
-        };
-        let found = pose_covariance_of_calibration(
-            &scene.rim,
-            &scene.views(&scene.truth),
-            &scene.pose,
-            &DMatrix::from_element(1, 1, 1.0),
-            derivative,
-        )
-        .unwrap();
+        let mut uncertainty = CalibrationUncertainty::independent(&[[1000.0, 0.0, 0.0]; 2]);
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            uncertainty.covariance[9 * view + i][9 * view + j] = by[i] * by[j];
+        }
+        let found = predicted(&scene, &uncertainty);
         let sigma = |from: usize| (from..from + 3).map(|i| found[(i, i)]).sum::<f64>().sqrt();
         // Errors within the epipolar planes: those across them leave residuals that robust weights answer to, not linearly.
         // Robust weights and lost edges make the real motion differ a little from the linear one.
@@ -130,4 +132,99 @@ fn a_pose_moves_with_the_calibration_as_is_predicted() {
         );
         assert!(sigma(0) > 0.02, "the case moves something");
     }
+}
+
+#[test]
+fn all_parameters_of_a_placement_together_bring_what_each_brings() {
+    let scene = scene();
+    let (source, detector) = (0.05, 0.05);
+    let uncertainty = CalibrationUncertainty::independent(&[[1000.0, source, detector]; 2]);
+    let found = predicted(&scene, &uncertainty);
+    let mut expected = Matrix6::zeros();
+    for (view, axis) in (0..2).flat_map(|view| (0..3).map(move |axis| (view, axis))) {
+        for of_source in [true, false] {
+            let matched = |sign: f64| {
+                let mut believed = scene.truth.clone();
+                let by = Vector3::from_fn(|i, _| if i == axis { sign } else { 0.0 });
+                match of_source {
+                    true => believed[view].source += by * source,
+                    false => believed[view].centre += by * detector,
+                }
+                scene.matched(&believed)
+            };
+            let moved = off(&scene, &matched(1.0), &matched(-1.0)) / 2.0;
+            expected += moved * moved.transpose();
+        }
+    }
+    // What a match repeats to by itself, where samples change their edge point: mm and rad.
+    let own = |i: usize| if i < 3 { 1e-3 } else { 6e-5 };
+    for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
+        let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
+        let error = (found[(i, j)] - expected[(i, j)]).abs();
+        assert!(
+            error < 0.05 * scale + own(i) * own(j),
+            "{i} {j}: {} predicted, {} matched",
+            found[(i, j)],
+            expected[(i, j)]
+        );
+    }
+}
+
+#[test]
+fn wrong_calibrations_drawn_at_random_move_poses_as_much_as_is_stated() {
+    const DRAWS: usize = 120;
+    let scene = scene();
+    let (source, detector) = (0.3, 0.1);
+    let uncertainty = CalibrationUncertainty::independent(&[[1000.0, source, detector]; 2]);
+    let stated = predicted(&scene, &uncertainty);
+    let right = scene.matched(&scene.truth);
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
+    let mut vector = |sigma: f64| {
+        Vector3::from_fn(|_, _| {
+            // Twelve uniform numbers make one that is normal nearly.
+            sigma * ((0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0)
+        })
+    };
+    let mut squares = Vector6::zeros();
+    for _ in 0..DRAWS {
+        let believed = scene.truth.clone().map(|view| TrueFluoroscope {
+            source: view.source + vector(source),
+            centre: view.centre + vector(detector),
+            ..view
+        });
+        squares += off(&scene, &scene.matched(&believed), &right).map(|v| v * v) / DRAWS as f64;
+    }
+    // Of the place alone: errors this large across the epipolar planes leave residuals that robust weights take for outliers, and turn
+    // the body by more than a linear answer says.
+    for i in 0..3 {
+        // One on average; of so many draws its standard deviation is 0.13.
+        let ratio = squares[i] / stated[(i, i)];
+        assert!((ratio - 1.0).abs() < 0.4, "{i}: {ratio}");
+    }
+}
+
+#[test]
+fn the_calibrations_part_is_added_to_a_match() {
+    let scene = scene();
+    let views = scene.views(&scene.truth);
+    let params = MatchParams::default();
+    let names = ["A".to_owned(), "B".to_owned()];
+    let found = match_body(&scene.rim, &views, &names, &scene.pose, &params, || false).unwrap();
+    assert_eq!(found.calibration_covariance, None);
+    let uncertainty = CalibrationUncertainty::independent(&[[1000.0, 0.3, 0.1]; 2]);
+    let with =
+        |uncertainty| with_calibration(found.clone(), &scene.rim, &views, uncertainty, &params.search());
+    let folded = with(&uncertainty);
+    let own = folded.calibration_covariance.unwrap();
+    for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
+        assert_eq!(folded.covariance[i][j], found.covariance[i][j] + own[i][j]);
+    }
+    for i in 0..6 {
+        let half = 1.959_964 * folded.covariance[i][i].sqrt();
+        assert!((folded.interval_95[i] - half).abs() < 1e-12 && own[i][i] > 0.0);
+    }
+    assert_eq!((folded.pose, folded.verdict), (found.pose, found.verdict));
+    // One of other views is not taken.
+    let other = CalibrationUncertainty::independent(&[[1000.0, 0.3, 0.1]; 3]);
+    assert_eq!(with(&other), found);
 }

@@ -12,7 +12,7 @@
 use std::collections::HashMap;
 
 use biplane_geometry::{Mesh, Point3, Vector3};
-use biplane_surface::Edges;
+use biplane_surface::{Edges, Surface};
 
 use crate::tree::{Item, Tree};
 
@@ -32,6 +32,7 @@ pub struct RimMesh {
     pub(crate) edges: usize,
     /// How far beside the rim one looks whether a face covers the picture, px.
     pub(crate) beside_px: f64,
+    surface: Surface,
     centroid: Point3,
     radius_of_gyration: f64,
 }
@@ -231,9 +232,15 @@ impl RimMesh {
             tree,
             edges: number as usize,
             beside_px: if flat { 1e-8 } else { 0.05 },
+            surface: Surface::new(mesh),
             centroid,
             radius_of_gyration: mesh.radius_of_gyration(),
         }
+    }
+
+    /// The mesh's triangles, for searches in space.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
     }
 
     /// The mesh's area centroid, model coordinates, mm.

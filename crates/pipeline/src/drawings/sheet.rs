@@ -76,7 +76,9 @@ fn reasons(svg: &mut Svg, heading: &Heading) -> f64 {
     svg.group(Style::area("reasons", RED), |svg| svg.rectangle([0.0, 0.0], [WIDTH, bottom]));
     let what = match heading.verdict {
         Verdict::Failed => "FAILED: do not use this calibration",
-        Verdict::Doubtful | Verdict::Good => "DOUBTFUL: something speaks against this calibration",
+        Verdict::Ambiguous | Verdict::Doubtful | Verdict::Good => {
+            "DOUBTFUL: something speaks against this calibration"
+        }
     };
     svg.text([MARGIN, 30.0], Font::new(19.0, "#ffffff").bold(), what);
     for (place, line) in lines.iter().enumerate() {

@@ -186,7 +186,7 @@ fn a_fluoroscope_that_was_moved_after_its_calibration_is_found_by_the_doctor() {
     assert_eq!(scene.biplane(&["run"]).0, 0);
     let (code, out, err) = scene.biplane(&["doctor"]);
     assert!(code == 0 && out.contains("fits") && !out.contains("does not fit"), "{out}\n{err}");
-    assert!(out.contains("do not say how sure"), "a file without covariance: {out}");
+    assert!(out.contains("it is not said how sure it is"), "a file without covariance: {out}");
 
     // The second fluoroscope 0.25 mm higher than its calibration says.
     scene.write(
@@ -195,7 +195,15 @@ fn a_fluoroscope_that_was_moved_after_its_calibration_is_found_by_the_doctor() {
     );
     let (code, out, err) = scene.biplane(&["run"]);
     assert!(code == 0 && out.contains("0 failed"), "the poses still fit, each view half\n{out}\n{err}");
+    for view in ["A", "B"] {
+        let calibration = format!("calibration = \"{view}.txt\"");
+        let stated = "uncertainty = { source_mm = 0.1, detector_mm = 0.05, pixel_mm = 0.25 }";
+        scene.edit(&calibration, &format!("{calibration}\n{stated}"));
+    }
+    scene.biplane(&["run"]);
     let (code, out, err) = scene.biplane(&["doctor", "--trial", "squat"]);
+    let line = out.lines().rfind(|line| line.starts_with("box")).unwrap();
+    assert!(line.ends_with("  sure"), "what is stated of the calibration is passed on: {out}");
     assert!(code == 1 && out.contains("does not fit"), "{out}\n{err}");
     let (code, _, err) = scene.biplane(&["doctor", "--trial", "other"]);
     assert!(code == 2 && err.contains("squat"), "{err}");

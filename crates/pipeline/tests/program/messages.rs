@@ -117,13 +117,45 @@ fn a_bad_row_of_starts_names_line_and_column() {
 fn a_body_without_start_says_how_to_give_one() {
     let scene = Scene::new();
     scene.write("starts.csv", HEADER.as_bytes());
+    scene.edit("[match]", "[match]\nanywhere = false");
     let (code, _, said) = scene.biplane(&["run"]);
     assert_eq!(code, 3);
     assert!(said.contains("no start pose for body `box` in trial `squat`"), "{said}");
+    assert!(said.contains("let the body be looked for: [match] anywhere = true"), "{said}");
     assert!(
         said.contains("trial,frame,body,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz") && said.contains("starts.csv"),
         "{said}"
     );
+}
+
+#[test]
+fn a_table_of_starts_without_a_body_is_told_and_the_body_looked_for() {
+    let scene = Scene::new();
+    scene.write("starts.csv", format!("{HEADER}squat,7,box,0,0,0,1,0,0,0\n").as_bytes());
+    let (code, out, said) = scene.biplane(&["plan"]);
+    assert_eq!(code, 0, "{out}{said}");
+    assert!(said.contains("starts.csv has 1 row(s) for it, none for a frame of the trial"), "{said}");
+    assert!(said.contains("Until then it is looked for anywhere"), "{said}");
+}
+
+#[test]
+fn how_sure_calibrations_are_is_said_of_all_or_of_none_and_must_be_possible() {
+    let stated = |text: &str| {
+        let scene = Scene::new();
+        scene.edit("calibration = \"A.txt\"", &format!("calibration = \"A.txt\"\nuncertainty = {text}"));
+        let (code, _, said) = scene.biplane(&["run"]);
+        assert_eq!(code, 2, "{said}");
+        said
+    };
+    let said = stated("{ source_mm = 0.3, detector_mm = 0.1, pixel_mm = 0.25 }");
+    assert!(said.contains("it is said how sure A is, but not how sure B is"), "{said}");
+    let said = stated("{ source_mm = -0.3, detector_mm = 0.1, pixel_mm = 0.25 }");
+    assert!(
+        said.contains("these standard deviations cannot be") && said.contains("pipeline.toml:6:"),
+        "{said}"
+    );
+    let said = stated("{ source_mm = 0.3 }");
+    assert!(said.contains("detector_mm"), "{said}");
 }
 
 #[test]
@@ -183,9 +215,10 @@ fn one_fault_is_told_once() {
 fn a_misspelt_name_in_starts_is_told_with_what_is_meant() {
     let scene = Scene::new();
     scene.write("starts.csv", scene.read("starts.csv").replace("squat", "sqaut").as_bytes());
-    let (code, _, said) = scene.biplane(&["run"]);
-    assert_eq!(code, 3);
+    let (code, _, said) = scene.biplane(&["plan"]);
+    assert_eq!(code, 0);
     assert!(said.contains("the study has no trial `sqaut`: did you mean `squat`?"), "{said}");
+    assert!(said.contains("Until then it is looked for anywhere"), "{said}");
     scene.write("starts.csv", format!("{HEADER}{}{}", row(0, 1.0), row(7, 1.0)).as_bytes());
     let (code, _, said) = scene.biplane(&["plan"]);
     assert_eq!(code, 0);

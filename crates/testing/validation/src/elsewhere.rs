@@ -1,5 +1,5 @@
 //! Ideal outlines that another program made (`fixtures/scene`): polygons in mm on the detector, of a finer mesh than the
-//! one that is matched.
+//! one that is matched, or of the very same one where only the search is looked at; and the offsets of its start poses.
 
 use std::path::Path;
 
@@ -18,6 +18,7 @@ use crate::{Scene, SceneError};
 struct File {
     views: Vec<FileView>,
     objects: std::collections::BTreeMap<String, FileObject>,
+    start_offsets: std::collections::BTreeMap<String, Vec<[f64; 6]>>,
 }
 
 #[derive(Deserialize)]
@@ -70,16 +71,44 @@ pub fn polygon_curve(corners: &[Point2]) -> Curve {
 /// The bodies of `fixtures/scene`.
 pub const BODIES: [&str; 2] = ["bone", "implant"];
 
-/// A body of `fixtures/scene` below `root`: outlines of its mesh of 36,000 points, its mesh of `points` to be matched.
+fn bad(path: &Path, what: impl std::fmt::Display) -> SceneError {
+    SceneError::Mesh(format!("{}: {what}", path.display()))
+}
+
+fn described(folder: &Path) -> Result<File, SceneError> {
+    let path = folder.join("scene.json");
+    let text = std::fs::read_to_string(&path).map_err(|e| bad(&path, e))?;
+    serde_json::from_str(&text).map_err(|e| bad(&path, e))
+}
+
+/// Offsets of the thesis's pose variables about the model's origin (mm, degrees) from the truth's, for start poses: set A, set B.
+///
+/// # Errors
+/// The file cannot be read, or has no such sets.
+pub fn offsets(root: &Path) -> Result<[Vec<[f64; 6]>; 2], SceneError> {
+    let folder = root.join("fixtures/scene");
+    let mut sets = described(&folder)?.start_offsets;
+    let mut set = |name: &str| {
+        sets.remove(name).ok_or_else(|| bad(&folder.join("scene.json"), format!("no start_offsets.{name}")))
+    };
+    Ok([set("A_truncated_gauss_sigma10_clip20")?, set("B_gauss_sigma20")?])
+}
+
+/// A body of `fixtures/scene` below `root`: outlines of its mesh of `outlines` points, its mesh of `points` to be matched.
+/// Where they are one mesh, the scene claims no accuracy.
 ///
 /// # Errors
 /// A file cannot be read, or is something else.
-pub fn scene(root: &Path, body: &str, points: usize, params: &MatchParams) -> Result<Scene, SceneError> {
+pub fn scene(
+    root: &Path,
+    body: &str,
+    outlines: usize,
+    points: usize,
+    params: &MatchParams,
+) -> Result<Scene, SceneError> {
     let folder = root.join("fixtures/scene");
-    let bad = |path: &Path, what: String| SceneError::Mesh(format!("{}: {what}", path.display()));
     let path = folder.join("scene.json");
-    let text = std::fs::read_to_string(&path).map_err(|e| bad(&path, e.to_string()))?;
-    let file: File = serde_json::from_str(&text).map_err(|e| bad(&path, e.to_string()))?;
+    let file = described(&folder)?;
     let views: Vec<TrueFluoroscope> = file
         .views
         .iter()
@@ -99,11 +128,9 @@ pub fn scene(root: &Path, body: &str, points: usize, params: &MatchParams) -> Re
         let truth = Pose::from_matrix(&matrix).ok_or_else(|| bad(&path, format!("pose {number}")))?;
         let mut curves = Vec::new();
         for (view, seen) in file.views.iter().zip(&views) {
-            let path = folder.join(format!("sil_{body}_36000_pose{number}_{}.csv", view.name));
-            let mut reader = csv::ReaderBuilder::new()
-                .has_headers(false)
-                .from_path(&path)
-                .map_err(|e| bad(&path, e.to_string()))?;
+            let path = folder.join(format!("sil_{body}_{outlines}_pose{number}_{}.csv", view.name));
+            let mut reader =
+                csv::ReaderBuilder::new().has_headers(false).from_path(&path).map_err(|e| bad(&path, e))?;
             let middle = seen.size.map(|n| (n as f64 - 1.0) / 2.0);
             let corners = reader
                 .deserialize::<(f64, f64)>()
@@ -111,7 +138,7 @@ pub fn scene(root: &Path, body: &str, points: usize, params: &MatchParams) -> Re
                     row.map(|(a, b)| Point2::new(middle[0] + a / view.pixel, middle[1] + b / view.pixel))
                 })
                 .collect::<Result<Vec<_>, _>>()
-                .map_err(|e| bad(&path, e.to_string()))?;
+                .map_err(|e| bad(&path, e))?;
             curves.push(Curves(vec![polygon_curve(&corners)]));
         }
         frames.push((format!("pose {number}"), truth, curves));
@@ -120,7 +147,10 @@ pub fn scene(root: &Path, body: &str, points: usize, params: &MatchParams) -> Re
     let mesh =
         read_mesh(&mesh, Some(LengthUnit::Millimetres)).map_err(|e| SceneError::Mesh(e.to_string()))?.model.0;
     let names: Vec<String> = file.views.iter().map(|v| v.name.clone()).collect();
-    let made = Made { origin: Origin::OtherFile, claim: Claim::Accuracy, params: params.clone() };
+    let made = match outlines == points {
+        true => Made { origin: Origin::mesh(&mesh), claim: Claim::SearchAlone, params: params.clone() },
+        false => Made { origin: Origin::OtherFile, claim: Claim::Accuracy, params: params.clone() },
+    };
     let calibrations: Vec<_> = views.iter().zip(&names).map(|(v, name)| v.calibration(name)).collect();
     Scene::made(made, &mesh, &calibrations, frames)
 }

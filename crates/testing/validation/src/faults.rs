@@ -1,7 +1,7 @@
 //! What is made wrong on purpose: noise of outlines, missing parts, calibrations that do not fit. Each is drawn from a seed.
 
 use biplane_artifact::Curves;
-use biplane_geometry::{Curve, Vector3};
+use biplane_geometry::{Curve, EdgePoint, Vector2, Vector3};
 use biplane_phantom::TrueFluoroscope;
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -75,6 +75,44 @@ pub fn cut(curves: &Curves, share: f64, random: &mut Xoshiro256PlusPlus) -> Curv
     Curves(left)
 }
 
+/// Lengths of wrong edges, px, and how far beside the outline their middles lie (standard deviation).
+const WRONG_EDGE_PX: (std::ops::Range<f64>, f64) = (15.0..60.0, 12.0);
+/// Distance of their points, px.
+const WRONG_STEP_PX: f64 = 0.5;
+/// How far they turn from end to end at most, rad.
+const WRONG_TURN: f64 = 1.5;
+
+/// Adds edges that are not the body's, until they are `share` of all edge points: straight stretches and arcs near the outline, in
+/// any direction, brighter on either side.
+pub fn cluttered(curves: &Curves, share: f64, random: &mut Xoshiro256PlusPlus) -> Curves {
+    let outline: Vec<EdgePoint> = curves.0.iter().flat_map(|c| &c.points).copied().collect();
+    let mut missing = (share / (1.0 - share) * outline.len() as f64).round() as usize;
+    let mut all = curves.clone();
+    while missing > 1 && !outline.is_empty() {
+        let beside = &outline[random.random_range(0..outline.len())];
+        let length = random.random_range(WRONG_EDGE_PX.0.clone());
+        let count = ((length / WRONG_STEP_PX) as usize).min(missing);
+        let mut heading: f64 = random.random_range(0.0..std::f64::consts::TAU);
+        // Every other one is straight.
+        let turn = if random.random() { 0.0 } else { random.random_range(-WRONG_TURN..WRONG_TURN) };
+        let side = if random.random() { 1.0 } else { -1.0 };
+        let along = |heading: f64| Vector2::new(heading.cos(), heading.sin());
+        let mut position = beside.position + beside.direction * (WRONG_EDGE_PX.1 * normal(random))
+            - along(heading) * (length / 2.0);
+        let points = (0..count)
+            .map(|_| {
+                heading += turn / count as f64;
+                position += along(heading) * WRONG_STEP_PX;
+                let across = Vector2::new(-heading.sin(), heading.cos()) * side;
+                EdgePoint { position, direction: across, ..*beside }
+            })
+            .collect();
+        all.0.push(Curve { points, closed: false });
+        missing -= count;
+    }
+    all
+}
+
 /// A fluoroscope as a calibration that is wrong has it: source and detector each displaced by independent normal numbers.
 pub fn miscalibrated(
     view: &TrueFluoroscope,
@@ -92,7 +130,7 @@ pub fn miscalibrated(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use biplane_geometry::{EdgePoint, Point2, Vector2};
+    use biplane_geometry::Point2;
 
     fn circle(points: usize) -> Curves {
         let point = |k: usize| {
@@ -120,6 +158,22 @@ mod tests {
         }
         assert!(((squares / count).sqrt() - 0.4).abs() < 0.02, "{}", (squares / count).sqrt());
         assert!((products / squares - (-1.0_f64).exp()).abs() < 0.06, "{}", products / squares);
+    }
+
+    #[test]
+    fn wrong_edges_are_their_share_and_lie_about_the_outline() {
+        let (mut count, mut near, mut outward) = (0, 0, 0);
+        for draw in 0..50 {
+            let all = cluttered(&circle(3600), 0.1, &mut random(1, 4, draw));
+            assert_eq!(all.0[0], circle(3600).0[0]);
+            let wrong: Vec<&EdgePoint> = all.0[1..].iter().flat_map(|c| &c.points).collect();
+            assert!(wrong.len().abs_diff(400) <= 1, "{}", wrong.len());
+            count += wrong.len();
+            near += wrong.iter().filter(|p| (p.position.coords.norm() - 300.0).abs() < 40.0).count();
+            outward += wrong.iter().filter(|p| p.direction.dot(&p.position.coords) > 0.0).count();
+        }
+        let share = |part: usize| part as f64 / count as f64;
+        assert!(share(near) > 0.9 && (0.4..0.6).contains(&share(outward)), "{near}, {outward} of {count}");
     }
 
     #[test]

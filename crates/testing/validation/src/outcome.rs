@@ -63,6 +63,8 @@ pub struct Outcome {
 /// How well an answer fits, and how sure it is said to be.
 #[derive(Debug, Clone)]
 pub struct Stated {
+    /// The verdict.
+    pub verdict: Verdict,
     /// Root mean square residual of the outline, px: the larger view's.
     pub residual_px: f64,
     /// The same at the true pose.
@@ -157,6 +159,7 @@ pub fn outcomes(scene: &Scene, method: Method, thesis: &BinghamParams, draw: Dra
             };
             let seconds = begun.elapsed().as_secs_f64();
             let stated = stated.map(|found| Stated {
+                verdict: found.verdict,
                 residual_px: found.views.iter().map(|v| v.rms_px).fold(0.0, f64::max),
                 truth_residual_px: truth_residual_px[k],
                 covariance: Matrix6::from_fn(|i, j| found.covariance[i][j]),

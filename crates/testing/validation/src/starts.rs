@@ -45,30 +45,54 @@ impl StartOffset {
     }
 }
 
-/// Offsets of [`set_a`]: standard deviation and cut, mm or degrees.
-const SET_A: (f64, f64) = (10.0, 20.0);
+/// Offsets of the thesis's pose variables (Eq. 3.1): independent Gaussian numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaussianOffset {
+    /// Standard deviation, mm or degrees.
+    pub sigma: f64,
+    /// Drawn again beyond this, mm or degrees.
+    pub cut: f64,
+}
 
-/// Start poses as the thesis draws them: each of the six pose variables (Eq. 3.1, about the centroid) off by a Gaussian
-/// number of standard deviation 10 mm or degrees, drawn again beyond 20. They depend on seed and frame alone.
+/// As the thesis draws starts.
+pub const SET_A: GaussianOffset = GaussianOffset { sigma: 10.0, cut: 20.0 };
+/// Twice as far, and not cut.
+pub const SET_B: GaussianOffset = GaussianOffset { sigma: 20.0, cut: f64::INFINITY };
+
+impl GaussianOffset {
+    /// Start poses around a reference, in its variables about the local origin `origin`. They depend on seed and frame alone.
+    pub fn draw(
+        &self,
+        reference: &Pose,
+        origin: &Point3,
+        seed: u64,
+        frame: usize,
+        count: usize,
+    ) -> Vec<Pose> {
+        let mut random =
+            Xoshiro256PlusPlus::seed_from_u64(seed.wrapping_mul(7_368_787).wrapping_add(frame as u64));
+        let mut offset = || loop {
+            // Box and Muller (1958).
+            let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+            let drawn = self.sigma * (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos();
+            if drawn.abs() <= self.cut {
+                break drawn;
+            }
+        };
+        (0..count).map(|_| offset_by(reference, origin, &std::array::from_fn(|_| offset()))).collect()
+    }
+}
+
+/// A pose whose thesis variables about `origin` are off a reference's by x, y, z (mm), alpha, beta, gamma (degrees).
+pub fn offset_by(reference: &Pose, origin: &Point3, by: &[f64; 6]) -> Pose {
+    let (angles, t) = reference.to_thesis(origin.coords);
+    let [a, b, c] = std::array::from_fn(|i| angles[i] + by[i + 3].to_radians());
+    Pose::from_thesis(a, b, c, t + Vector3::new(by[0], by[1], by[2]), origin.coords)
+}
+
+/// Start poses of [`SET_A`] about the centroid.
 pub fn set_a(reference: &Pose, centroid: &Point3, seed: u64, frame: usize, count: usize) -> Vec<Pose> {
-    let mut random =
-        Xoshiro256PlusPlus::seed_from_u64(seed.wrapping_mul(7_368_787).wrapping_add(frame as u64));
-    let mut offset = || loop {
-        // Box and Muller (1958).
-        let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
-        let drawn = SET_A.0 * (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos();
-        if drawn.abs() <= SET_A.1 {
-            break drawn;
-        }
-    };
-    let (angles, t) = reference.to_thesis(centroid.coords);
-    (0..count)
-        .map(|_| {
-            let moved = t + Vector3::from_fn(|_, _| offset());
-            let [a, b, c] = angles.map(|angle| angle + offset().to_radians());
-            Pose::from_thesis(a, b, c, moved, centroid.coords)
-        })
-        .collect()
+    SET_A.draw(reference, centroid, seed, frame, count)
 }
 
 /// Turns of [`turned`], degrees.

@@ -6,7 +6,7 @@ use biplane_geometry::{Curve, EdgePoint, Point3, Pose};
 use biplane_outline::{Outline, RimMesh, Sampling};
 
 use super::{BinghamView, best, descend, spread};
-use crate::stage::answer;
+use crate::answer::{Searched, answer, starts_tried};
 use crate::{EdgeField, MatchError, MatchParams, View, assess, judge};
 
 /// Least cosine between the outline's normal and the direction of an edge of the body's own contour: 45 degrees.
@@ -103,5 +103,12 @@ pub fn match_bingham(
         }
     }
     let calls: usize = descents.iter().map(|d| d.calls).sum();
-    Ok(answer(&assessed, fits, verdict, reason, u32::try_from(calls).unwrap_or(u32::MAX)))
+    let rested: Vec<Pose> = descents.iter().filter(|d| d.converged).map(|d| d.pose).collect();
+    let searched = Searched {
+        objective: best.objective,
+        iterations: u32::try_from(calls).unwrap_or(u32::MAX),
+        starts: starts_tried(descents.len(), &rested, origin),
+        alternative: None,
+    };
+    Ok(answer(&assessed, (fits, verdict, reason), searched))
 }

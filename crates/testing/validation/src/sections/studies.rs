@@ -12,10 +12,10 @@ use crate::{
 };
 
 /// A study and a body of it: name, pipeline file, body, reference.
-type Studied = (&'static str, &'static str, &'static str, &'static str);
+pub(super) type Studied = (&'static str, &'static str, &'static str, &'static str);
 
 /// gVirtualXray's.
-const SIMULATED: [Studied; 6] = [
+pub(super) const SIMULATED: [Studied; 6] = [
     (
         "knee implant, femoral component",
         "pipeline.toml",
@@ -51,7 +51,7 @@ const SIMULATED: [Studied; 6] = [
 
 /// The real femur's reference, from the project's folder, and the pipeline files that count pixels either way.
 const REAL_REFERENCE: &str = "../shared/data/real/knee-implant-biplane/reference_femur_world_from_model.csv";
-const REAL: [Studied; 2] = [
+pub(super) const REAL: [Studied; 2] = [
     (
         "real femur, pixel_origin = \"centre\"",
         "fixtures/real/knee-implant-biplane-centre.toml",
@@ -117,7 +117,7 @@ pub fn simulated(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut outlines = table("outlines-made-elsewhere", "ideal outlines made elsewhere");
     for body in elsewhere::BODIES {
         for points in [3_500, 15_000] {
-            let scene = elsewhere::scene(&lab.root, body, points, &lab::ideal_params())?;
+            let scene = elsewhere::scene(&lab.root, body, 36_000, points, &lab::ideal_params())?;
             let count = lab.count(50, 5);
             let draw = |truth: &_, centroid: &_, frame| set_a(truth, centroid, lab.seed, frame, count);
             let all = outcomes(&scene, Method::Default, &lab::thesis_params(), &draw);
