@@ -79,7 +79,14 @@ fn views_of(
     let see = |(number, fluoroscope): (usize, Fluoroscope)| {
         let mut outline = Outline::new();
         outline.trace(rim, pose, &fluoroscope, Sampling { step_px: 1.0 });
-        let points: Vec<EdgePoint> = outline.points().iter().filter_map(|p| change(number, p)).collect();
+        // In order round the middle: this body's outline is star-shaped about it.
+        let middle = fluoroscope.project(&pose.transform(rim.centroid())).unwrap().pixel;
+        let mut around = outline.points().to_vec();
+        around.sort_by(|a, b| {
+            let angle = |p: &OutlinePoint| (p.pixel.y - middle.y).atan2(p.pixel.x - middle.x);
+            angle(a).total_cmp(&angle(b))
+        });
+        let points: Vec<EdgePoint> = around.iter().filter_map(|p| change(number, p)).collect();
         let curves = Curves(vec![Curve { points, closed: false }]);
         View { edges: EdgeField::new(&curves, None), fluoroscope }
     };
