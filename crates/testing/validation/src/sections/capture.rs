@@ -59,7 +59,7 @@ fn row(label: &str, all: &[Outcome]) -> Row {
 fn effort(lab: &Lab, method: Method) -> (usize, usize) {
     match method {
         Method::Default => (lab.count(100, 4), lab.count(10, 3)),
-        Method::Thesis => (lab.count(6, 2), lab.count(5, 2)),
+        Method::Thesis => (lab.count(5, 2), lab.count(4, 2)),
     }
 }
 
