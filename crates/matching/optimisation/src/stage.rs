@@ -290,7 +290,7 @@ impl MatchParams {
     /// What is known of the edges' bias, if it is to be predicted.
     pub fn bias(&self) -> Option<BiasParams> {
         let params = BiasParams { attenuation_per_mm: self.attenuation_per_mm, blur_px: self.blur_px };
-        (self.edge_bias == EdgeBias::Predicted).then_some(params)
+        (self.edge_bias == EdgeBias::Predicted && self.inset_px > 0.0).then_some(params)
     }
 
     pub(crate) fn limits(&self) -> Limits {
