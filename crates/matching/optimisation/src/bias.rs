@@ -30,7 +30,7 @@ const ATTENUATION: (f64, f64) = (0.3, 1.3);
 /// Standard deviation of the blur, px.
 const BLUR_SIGMA_PX: f64 = 0.5;
 /// Standard deviation of what a view's edges lie inside beside what is predicted, px.
-const INSET_SIGMA_PX: f64 = 0.1;
+const INSET_SIGMA_PX: f64 = 0.25;
 /// Rounds at most; the second one moves the body by some micrometres.
 const ROUNDS: usize = 4;
 /// Distance of samples, px: noise of edges is shared over as much.

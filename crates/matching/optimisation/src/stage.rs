@@ -290,7 +290,7 @@ impl MatchParams {
     /// What is known of the edges' bias, if it is to be predicted.
     pub fn bias(&self) -> Option<BiasParams> {
         let params = BiasParams { attenuation_per_mm: self.attenuation_per_mm, blur_px: self.blur_px };
-        (self.edge_bias == EdgeBias::Predicted).then_some(params)
+        (self.edge_bias == EdgeBias::Predicted && self.inset_px > 0.0).then_some(params)
     }
 
     pub(crate) fn limits(&self) -> Limits {
@@ -371,7 +371,12 @@ pub fn match_anywhere(
         for end in &mut ends {
             let away = end.pose.error_against(&best, mesh.centroid());
             if away.translation_mm < SAME.0 && away.rotation_rad < SAME.1 {
-                *end = take_out(mesh, views, end, &search, &bias).unwrap_or_else(|| end.clone());
+                let verdict = |of: &Refined| judge(of, names, &limits).1;
+                // A pose that fits is not given for one that does not.
+                let free = take_out(mesh, views, end, &search, &bias);
+                if let Some(free) = free.filter(|free| verdict(free) <= verdict(end)) {
+                    *end = free;
+                }
             }
         }
     }

@@ -65,6 +65,7 @@ fn without_starts_a_box_is_found_and_said_to_be_ambiguous() {
     assert_eq!(code, 0, "{out}{err}");
     assert!(out.contains("0 good, 0 doubtful, 3 ambiguous, 0 failed"), "{out}");
     assert_eq!(column(&scene, "start"), ["anywhere"; 3]);
+    assert!(out.contains("edits/poses.csv") && !out.contains("Hardly a match is good"), "what to do: {out}");
     for frame in 0..3 {
         let (q, t) = truth(frame);
         for (name, expected) in [("tx_mm", t.x), ("ty_mm", t.y), ("tz_mm", t.z)] {
@@ -86,6 +87,12 @@ fn without_starts_a_box_is_found_and_said_to_be_ambiguous() {
         assert!(turns[0].iamax() != turns[1].iamax(), "two poses: {turns:?}");
     }
     assert!(scene.read("results/report.html").contains("another pose fits as well"));
+    // A start near one of them is the choice.
+    scene.write("edits/poses.csv", format!("{HEADER}{}", row(1, 2.0)).as_bytes());
+    let (_, out, _) = scene.biplane(&["run"]);
+    assert!(out.contains("3 good, 0 doubtful, 0 failed"), "{out}");
+    std::fs::remove_dir_all(scene.path("edits")).unwrap();
+    scene.biplane(&["run"]);
     assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 22 items are cached\n");
 }
 

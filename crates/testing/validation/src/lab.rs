@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use biplane_artifact::Curves;
 use biplane_geometry::{Mesh, Pose};
 use biplane_lofting::LoftParams;
-use biplane_optimisation::{BinghamParams, MatchParams};
+use biplane_optimisation::{BinghamParams, EdgeBias, MatchParams};
 use biplane_phantom::{Body, TrueFluoroscope, ideal_outline};
 use rayon::prelude::*;
 
@@ -120,6 +120,11 @@ pub fn calibrations(views: &[TrueFluoroscope]) -> Vec<biplane_artifact::Calibrat
 /// The default, but it looks for edges as far as starts of set A are off: there are none but the body's.
 pub fn ideal_params() -> MatchParams {
     MatchParams { search_px: 200.0, ..MatchParams::default() }
+}
+
+/// The same for outlines that are no edges of X-ray pictures, and so do not lie inside the body's.
+pub fn unbiased_params() -> MatchParams {
+    MatchParams { edge_bias: EdgeBias::None, ..ideal_params() }
 }
 
 /// The thesis's settings.

@@ -118,3 +118,29 @@ pub fn turned(reference: &Pose, centroid: &Point3) -> Vec<Pose> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offsets_are_of_the_thesis_variables_and_as_wide_as_is_said() {
+        let (truth, origin) = (
+            Pose::from_thesis(0.3, -0.4, 0.2, Vector3::new(5.0, -7.0, 9.0), Vector3::zeros()),
+            Point3::new(4.0, 2.0, -30.0),
+        );
+        let off = |pose: &Pose| -> [f64; 6] {
+            let ((a, t), (b, u)) = (pose.to_thesis(origin.coords), truth.to_thesis(origin.coords));
+            std::array::from_fn(|i| if i < 3 { t[i] - u[i] } else { (a[i - 3] - b[i - 3]).to_degrees() })
+        };
+        let by = [3.0, -2.0, 1.0, 12.0, -7.0, 5.0];
+        let found = off(&offset_by(&truth, &origin, &by));
+        assert!((0..6).all(|i| (found[i] - by[i]).abs() < 1e-9), "{found:?}");
+        let all: Vec<f64> = SET_A.draw(&truth, &origin, 1, 0, 2_000).iter().flat_map(off).collect();
+        assert!(all.iter().all(|v| v.abs() <= 20.0 + 1e-9));
+        let deviation = (all.iter().map(|v| v * v).sum::<f64>() / all.len() as f64).sqrt();
+        // A normal number that is cut at two standard deviations keeps 0.88 of one.
+        assert!((deviation - 8.8).abs() < 0.15, "{deviation}");
+        assert!(SET_B.draw(&truth, &origin, 1, 0, 200).iter().flat_map(off).any(|v| v.abs() > 40.0));
+    }
+}

@@ -156,7 +156,7 @@ fn random(
     outlines: &(dyn Fn(&Pose) -> Vec<Curves> + Sync),
 ) -> (Vec<Found>, f64) {
     let (library, prepared_s) = library(mesh);
-    let (rim, params) = (RimMesh::new(mesh), ideal_params());
+    let (rim, params) = (RimMesh::new(mesh), MatchParams::default());
     let calibrations = calibrations(views);
     let names: Vec<String> = calibrations.iter().map(|c| c.view.clone()).collect();
     let fluoroscopes: Vec<Fluoroscope> = calibrations.iter().map(Fluoroscope::from).collect();

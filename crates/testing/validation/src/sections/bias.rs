@@ -49,7 +49,7 @@ fn figures(outcomes: &[Outcome]) -> [f64; 6] {
 /// Measures it.
 pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let views = biplane(90.0);
-    let count = lab.count(40, 6);
+    let count = lab.count(20, 5);
     let postures: Vec<_> = (0..count).map(|k| (k.to_string(), Posture::random(lab.seed + 7, k))).collect();
     let noiseless = Exposure {
         photons_per_px: f64::INFINITY,

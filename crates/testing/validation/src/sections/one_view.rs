@@ -7,7 +7,7 @@
 
 use biplane_artifact::Verdict;
 use biplane_geometry::{EdgePoint, Point3, Pose, Vector3};
-use biplane_optimisation::MatchParams;
+use biplane_optimisation::{EdgeBias, MatchParams};
 use biplane_phantom::{Body, TrueFluoroscope, biplane};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -180,7 +180,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 })
                 .collect();
             // Depth is loose in one view: that alone does not speak against a pose.
-            let params = MatchParams { inset_px, good_sigma_mm: f64::MAX, ..MatchParams::default() };
+            let edge_bias = if inset_px > 0.0 { EdgeBias::Constant } else { EdgeBias::None };
+            let params =
+                MatchParams { edge_bias, inset_px, good_sigma_mm: f64::MAX, ..MatchParams::default() };
             let made = Made { origin: Origin::Solid, claim: Claim::Accuracy, params };
             let views = std::slice::from_ref(&view);
             let scene = Scene::made(made, &mesh, &calibrations(views), disturbed)?;
@@ -222,8 +224,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                  outlines from the analytic surfaces, points 1 px apart, each moved along its normal by independent noise of {NOISE_PX} \
                  px. The bound is that of Cramer and Rao for this noise: no unbiased method that knows the true surface does better. It is \
                  computed from the analytic surfaces alone. Errors are of matches in the truth's basin, whatever their \
-                 verdict; elsewhere is beyond {} mm in plane or {} degrees. As edges of X-ray pictures lie inside a smooth outline, the default \
-                 solves for an inset in each view, and in one view that is told from depth by perspective alone: both ways are measured. \
+                 verdict; elsewhere is beyond {} mm in plane or {} degrees. Edges of X-ray pictures lie inside a smooth \
+                 outline; where that inset is solved for (`edge_bias = \"constant\"`), it is told from depth by perspective alone. Both it \
+                 and `\"none\"` are measured. \
                  Goals: {IN_PLANE_MM} mm in plane at 95 %; depth as good as geometry allows.",
                 lab.seed, ELSEWHERE.0, ELSEWHERE.1
             ),
