@@ -11,7 +11,7 @@
 
 use biplane_artifact::CalibrationUncertainty;
 use biplane_geometry::Pose;
-use biplane_outline::{Outline, RimMesh, Sampling};
+use biplane_outline::RimMesh;
 use nalgebra::{DMatrix, Matrix6, RowSVector, SMatrix, SVector, Vector6};
 
 use crate::View;
@@ -24,11 +24,6 @@ use crate::refine::{
 const UNKNOWN: usize = 9;
 /// Times the step is weighed anew.
 const REWEIGHED: usize = 12;
-
-/// Distance of the outline's samples for the calibration's part, px: it changes slowly along an outline.
-const STEP_PX: f64 = 4.0;
-/// Least cosine between the outline's normal and the direction of its edge: 25 degrees, as at the end of a match.
-const FOUND_COSINE: f64 = 0.906;
 
 /// How far two views disagree about where a body is, along the normal of the plane through it and both sources.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,41 +120,28 @@ pub fn pose_covariance_of_calibration(
     if !fits {
         return None;
     }
-    let centre = pose.transform(mesh.centroid());
-    let mut outline = Outline::new();
+    let mut buffers = Buffers::default();
+    collect_anew(mesh, views, pose, params, &mut buffers);
+    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px, LEAST_SCALE_PX);
     let mut normal = Matrix6::zeros();
     let mut mixed = DMatrix::<f64>::zeros(6, parameters);
-    for (number, (view, distance)) in views.iter().zip(&uncertainty.source_to_detector_mm).enumerate() {
-        outline.trace(mesh, pose, &view.fluoroscope, Sampling { step_px: STEP_PX });
+    for (number, (rows, inset)) in buffers.by_view().enumerate() {
+        let (view, distance) = (&views[number], uncertainty.source_to_detector_mm[number]);
         // The inset of a view takes up what is common to its outline.
         let (mut sum, mut by_pose, mut by_view) = (0.0, Vector6::zeros(), RowSVector::<f64, VIEW>::zeros());
         let mut own_mixed = SMatrix::<f64, 6, VIEW>::zeros();
-        for point in outline.points() {
-            let direction = point.normal * params.contrast;
-            if !view.fluoroscope.on_image(&point.pixel, 2.0)
-                || view
-                    .edges
-                    .nearest(&point.pixel, &direction, params.final_search_px, FOUND_COSINE)
-                    .is_none()
-            {
-                continue;
-            }
-            let Some((projection, by_point)) = view.fluoroscope.project_with_derivative(&point.world) else {
+        for row in rows {
+            let point = buffers.sample(number, row);
+            let Some(by_placement) = view.fluoroscope.pixel_by_placement(&point.world, distance) else {
                 continue;
             };
-            let Some(by_placement) = view.fluoroscope.pixel_by_placement(&point.world, *distance) else {
-                continue;
-            };
-            let gradient = by_point.transpose() * point.normal;
-            let turn = (point.world - centre).cross(&gradient);
-            let own = Vector6::new(gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z);
             let moved = point.normal.transpose() * by_placement;
-            // As the match weighs: by the squared residual in mm.
-            let weight = point.length_px * view.fluoroscope.mm_per_px(projection.depth).powi(2);
-            normal += own * own.transpose() * weight;
-            own_mixed += own * moved * weight;
+            // As the match weighs, and as its weights answer to a small motion.
+            let weight = row.weight() * robust_weight(scale_squared, row.residual - inset);
+            normal += row.derivative * row.derivative.transpose() * weight;
+            own_mixed += row.derivative * moved * weight;
             sum += weight;
-            by_pose += own * weight;
+            by_pose += row.derivative * weight;
             by_view += moved * weight;
         }
         if sum > 0.0 && params.inset_px > 0.0 {

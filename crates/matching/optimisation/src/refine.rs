@@ -76,9 +76,12 @@ const HELD_MM: f64 = 0.02;
 const SWING_MM: f64 = 0.01;
 /// Largest step, mm of the centroid or of the surface by turning.
 const LONGEST_STEP_MM: f64 = 25.0;
-/// The robust weight's scale is never below this, px: below it are the differences between mesh and body.
-pub(crate) const LEAST_SCALE_PX: f64 = 0.3;
-/// The same while far.
+/// The robust weight's scale is never below this, px: below it are the differences between mesh and body, and what an error of the
+/// calibration leaves between the views, to which a pose should answer in proportion.
+pub(crate) const LEAST_SCALE_PX: f64 = 0.8;
+/// Noise of an inset seen along one correlation length, px.
+const INSET_NOISE_PX: f64 = 0.3;
+/// The robust weight's least scale while far, px.
 const LEAST_FAR_SCALE_PX: f64 = 4.0;
 
 /// What one view says of a pose. Residuals are those that the inset leaves.
@@ -136,12 +139,19 @@ pub(crate) struct Row {
     pub(crate) residual: f64,
     /// Its derivative by the twist, px per mm and px per rad.
     pub(crate) derivative: Vector6<f64>,
-    /// Where it is, ideal px.
-    pub(crate) pixel: [f64; 2],
+    /// Number of its sample in the view.
+    sample: u32,
     /// Size of a pixel at its depth.
     mm_per_px: f64,
     /// Length of the outline it stands for, px.
     pub(crate) length: f64,
+}
+
+impl Row {
+    /// Its weight but for what is robust, in mm^2: the length that it stands for, by the square of a pixel's size.
+    pub(crate) fn weight(&self) -> f64 {
+        self.length * self.mm_per_px * self.mm_per_px
+    }
 }
 
 /// Weighted normal equations of one step, in mm^2: sums over rows of weight, derivative and residual.
@@ -182,6 +192,11 @@ impl Default for Buffers {
 }
 
 impl Buffers {
+    /// The sample of a row.
+    pub(crate) fn sample(&self, view: usize, row: &Row) -> &OutlinePoint {
+        &self.samples[view][row.sample as usize]
+    }
+
     /// The rows of each view with its inset.
     pub(crate) fn by_view(&self) -> impl Iterator<Item = (&[Row], f64)> {
         let starts = std::iter::once(0).chain(self.views.iter().map(|v| v.0));
@@ -307,7 +322,7 @@ fn pair(views: &[View], center: &Point3, radius: f64, params: &RefineParams, buf
                 continue;
             }
             let across = edge.direction * params.contrast;
-            rows.extend(row(view, sample, center, &across, across.dot(&apart), sample.length_px));
+            rows.extend(row(view, (0, sample), center, &across, across.dot(&apart), sample.length_px));
         }
         if view.edges.length_px() <= FAR_CLUTTER * length {
             let share = length / edges.points().len().max(1) as f64;
@@ -325,7 +340,7 @@ fn pair(views: &[View], center: &Point3, radius: f64, params: &RefineParams, buf
                     continue;
                 }
                 let across = sample.normal;
-                rows.extend(row(view, sample, center, &across, across.dot(&apart), share));
+                rows.extend(row(view, (0, sample), center, &across, across.dot(&apart), share));
             }
         }
         ends.push((rows.len(), 0.0));
@@ -336,7 +351,7 @@ fn pair(views: &[View], center: &Point3, radius: f64, params: &RefineParams, buf
 #[inline]
 fn row(
     view: &View,
-    sample: &OutlinePoint,
+    (number, sample): (u32, &OutlinePoint),
     center: &Point3,
     across: &Vector2,
     residual: f64,
@@ -348,7 +363,7 @@ fn row(
     Some(Row {
         residual,
         derivative: Vector6::new(gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z),
-        pixel: [sample.pixel.x, sample.pixel.y],
+        sample: number,
         mm_per_px: view.fluoroscope.mm_per_px(sample.depth),
         length,
     })
@@ -456,7 +471,7 @@ fn collect_view(
     rows: &mut Vec<Row>,
 ) -> Evidence {
     let mut evidence = Evidence::default();
-    for point in samples {
+    for (number, point) in samples.iter_mut().enumerate() {
         let Some(seen) = view.fluoroscope.project(&point.world) else { continue };
         (point.pixel, point.depth) = (seen.pixel, seen.depth);
         evidence.outline_px += point.length_px;
@@ -469,7 +484,8 @@ fn collect_view(
         else {
             continue;
         };
-        let Some(row) = row(view, point, center, &point.normal, residual, point.length_px) else { continue };
+        let own = (number as u32, &*point);
+        let Some(row) = row(view, own, center, &point.normal, residual, point.length_px) else { continue };
         evidence.matched_px += point.length_px;
         rows.push(row);
     }
@@ -510,7 +526,7 @@ fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64, least_sca
         for row in rows {
             let left = row.residual - inset;
             let mm2 = row.mm_per_px * row.mm_per_px;
-            let weight = row.length * mm2 * robust_weight(normal.scale_squared, left);
+            let weight = row.weight() * robust_weight(normal.scale_squared, left);
             normal.matrix.syger(weight, &row.derivative, &row.derivative, 1.0);
             normal.vector += row.derivative * (weight * row.residual);
             normal.weight += weight;
@@ -522,7 +538,7 @@ fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64, least_sca
         }
         if inset_px > 0.0 && sum > 0.0 {
             // What is known of the inset beforehand counts as much as one correlation length of residuals would.
-            let known = CORRELATION_PX * prior * (LEAST_SCALE_PX / inset_px).powi(2);
+            let known = CORRELATION_PX * prior * (INSET_NOISE_PX / inset_px).powi(2);
             normal.matrix.syger(-1.0 / (sum + known), &sum_derivative, &sum_derivative, 1.0);
             normal.vector -= sum_derivative * (sum_residual / (sum + known));
         }
