@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 use crate::answer::{Searched, answer, starts_tried};
 use crate::starts::normal;
 use crate::{
-    BinghamView, MatchError, MatchInputs, MatchParams, Method, View, assess, descend, judge, own_contour,
-    refine,
+    BinghamView, MatchError, MatchInputs, MatchParams, Method, RefineParams, View, assess, descend, judge,
+    own_contour, refine,
 };
 
 /// `[match.search]`: which objective, which optimiser, from which starts. They count with `method = "search"` alone.
@@ -199,9 +199,11 @@ impl SearchParams {
         std::iter::once(*start).chain(others).collect()
     }
 
-    fn settings(&self, contrast: f64) -> Settings {
+    /// The contrast and inset are those of the other methods.
+    fn settings(&self, common: &RefineParams) -> Settings {
         Settings {
-            contrast,
+            contrast: common.contrast,
+            inset_px: common.inset_px,
             spacing_px: self.spacing_px,
             outline_points: self.outline_points,
             grid: self.grid,
@@ -212,6 +214,9 @@ impl SearchParams {
         }
     }
 }
+
+/// Tolerance of all stages but the last, mm.
+const COARSE_MM: f64 = 0.02;
 
 /// Where one search ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -262,9 +267,14 @@ fn search_from(objective: &mut dyn Objective, rim: &RimMesh, from: &Pose, params
     let mut about = About { objective, variables };
     let mut at = Vector6::zeros();
     let mut ended = Ended { pose: *from, objective: f64::MAX, calls: 0, converged: false };
-    for stage in 0..about.objective.stages() {
+    let stages = about.objective.stages();
+    for stage in 0..stages {
         about.objective.enter(stage);
         search.calls = params.calls - ended.calls;
+        // What a later stage finds better need not be found finely.
+        let last = stage + 1 == stages;
+        search.tolerance = params.tolerance_mm.max(if last { 0.0 } else { COARSE_MM });
+        search.last_difference = if last { params.last_difference_mm } else { params.first_difference_mm };
         // Checked with the parameters: an optimiser that needs rows has an objective with rows.
         let Ok(found) = params.optimiser.minimise(&mut about, &at, &search) else { return ended };
         at = found.at;
@@ -314,7 +324,7 @@ pub(crate) fn match_search(
     let own = &params.search;
     let search = params.search();
     let mut ends = Vec::with_capacity(own.starts);
-    let made = own.objective.of(body, targets, &own.settings(search.contrast));
+    let made = own.objective.of(body, targets, &own.settings(&search));
     let unmade = made.as_ref().err().map(ToString::to_string);
     if let Ok(mut objective) = made {
         for from in own.starts(start, body.rim.centroid()) {
@@ -402,7 +412,7 @@ impl<'a> Single<'a> {
                 let kind = params.search.objective;
                 let field = (kind == Kind::InversePoint).then(field);
                 let targets = targets(inputs, rim, &views, start, params);
-                let settings = params.search.settings(params.search().contrast);
+                let settings = params.search.settings(&params.search());
                 let made = kind.of(&Body { mesh, rim, field }, &targets, &settings);
                 Way::Search(made.map_err(|e| e.to_string())?)
             }
