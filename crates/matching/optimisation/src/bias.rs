@@ -37,7 +37,7 @@ const ROUNDS: usize = 4;
 const SPACING_PX: f64 = 4.0;
 /// Least cosine between the outline's normal and an edge's direction, as at the end of a descent.
 const MIN_COSINE: f64 = 0.906;
-/// Edges that lie on the outline to this in the median, px, have no bias worth a search.
+/// Edges that lie on the outline to this, as a root mean square or in the median, px, have no bias worth a search.
 const ON_OUTLINE_PX: f64 = 0.05;
 /// Share of the samples that must have chords.
 const WITH_CHORDS: f64 = 0.7;
@@ -54,6 +54,10 @@ pub fn take_out(
     search: &RefineParams,
     params: &BiasParams,
 ) -> Option<Refined> {
+    let off = |e: &Evidence| e.inset_px.hypot((e.squared / e.matched_px.max(1e-9)).sqrt());
+    if found.evidence.iter().all(|e| off(e) < ON_OUTLINE_PX) {
+        return None;
+    }
     let arm = mesh.radius_of_gyration().max(1e-3);
     let turned = MOVED_MM / arm;
     let prior = Prior {
