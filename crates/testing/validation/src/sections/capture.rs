@@ -58,8 +58,8 @@ fn row(label: &str, all: &[Outcome]) -> Row {
 /// Poses and starts of a method: the thesis's is slow.
 fn effort(lab: &Lab, method: Method) -> (usize, usize) {
     match method {
-        Method::Default => (lab.count(100, 4), lab.count(10, 3)),
-        Method::Thesis => (lab.count(5, 2), lab.count(4, 2)),
+        Method::Default => (lab.count(60, 4), lab.count(5, 3)),
+        Method::Thesis => (lab.count(5, 2), lab.count(3, 2)),
     }
 }
 
