@@ -34,7 +34,7 @@ use crate::{
 pub struct SearchParams {
     /// What is minimised.
     pub objective: Kind,
-    /// By what.
+    /// What minimises it.
     pub optimiser: Optimiser,
     /// Starts all together: the one given, and Gaussian ones around it.
     #[schemars(range(min = 1, max = 1000))]
@@ -66,7 +66,7 @@ pub struct SearchParams {
     /// Step of finite differences at first, mm.
     #[schemars(range(min = 0.000_001, max = 10.0))]
     pub first_difference_mm: f64,
-    /// And at the end, mm.
+    /// Step of finite differences at the end, mm.
     #[schemars(range(min = 0.000_001, max = 10.0))]
     pub last_difference_mm: f64,
     /// First steps of optimisers without derivatives and the spread of first populations, mm.
@@ -87,10 +87,10 @@ pub struct SearchParams {
     /// Scale of robust objectives in the first stage, px: residuals well above it count little.
     #[schemars(range(min = 0.1, max = 1000.0))]
     pub wide_px: f64,
-    /// And in the last one.
+    /// Scale of robust objectives in the last stage, px.
     #[schemars(range(min = 0.1, max = 1000.0))]
     pub fine_px: f64,
-    /// Stages from wide to fine.
+    /// Stages of robust objectives from wide to fine.
     #[schemars(range(min = 1, max = 20))]
     pub stages: usize,
 }
