@@ -38,6 +38,9 @@ pub struct RefineParams {
     pub still_mm: f64,
     /// Steps at most with the last search radius.
     pub most_steps: u32,
+    /// Residuals of about this size are never taken for outliers, px. Differences between mesh and body ([`LEAST_SCALE_PX`]), or
+    /// what a calibration that is not sure makes of them.
+    pub least_scale_px: f64,
 }
 
 /// Factor of the search radius from step to step.
@@ -51,7 +54,7 @@ const SWING_MM: f64 = 0.01;
 /// Largest step, mm of the centroid or of the surface by turning.
 const LONGEST_STEP_MM: f64 = 12.0;
 /// The robust weight's scale is never below this, px: below it are the differences between mesh and body.
-const LEAST_SCALE_PX: f64 = 0.3;
+pub(crate) const LEAST_SCALE_PX: f64 = 0.3;
 
 /// What one view says of a pose. Residuals are those that the inset leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -150,7 +153,7 @@ pub fn refine(mesh: &RimMesh, views: &[View], start: &Pose, params: &RefineParam
     while final_steps < params.most_steps && !still {
         let last = radius <= params.final_search_px;
         collect(mesh, views, &pose, radius, last, params, &mut buffers);
-        let normal = normal_equations(&mut buffers, radius, params.inset_px);
+        let normal = normal_equations(&mut buffers, radius, params);
         let Some(twist) = solve(&normal, mesh.radius_of_gyration()) else { break };
         let center = pose.transform(mesh.centroid());
         pose = pose.moved(&twist, &center);
@@ -263,20 +266,21 @@ pub(crate) fn robust_weight(scale_squared: f64, residual: f64) -> f64 {
 }
 
 /// Square of the robust weight's scale, px^2.
-pub(crate) fn robust_scale_squared(buffers: &mut Buffers, radius: f64) -> f64 {
+pub(crate) fn robust_scale_squared(buffers: &mut Buffers, radius: f64, least: f64) -> f64 {
     let mut sizes = std::mem::take(&mut buffers.sizes);
     sizes.clear();
     for (rows, inset) in buffers.by_view() {
         sizes.extend(rows.iter().map(|r| (r.residual - inset).abs()));
     }
     // 1.4826 turns a median size into a standard deviation; residuals beyond about 2.5 of them lose their weight.
-    let scale = (2.5 * 1.4826 * median(&mut sizes)).clamp(LEAST_SCALE_PX, (radius / 2.0).max(LEAST_SCALE_PX));
+    let scale = (2.5 * 1.4826 * median(&mut sizes)).clamp(least, (radius / 2.0).max(least));
     buffers.sizes = sizes;
     scale * scale
 }
 
-fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64) -> Normal {
-    let scale_squared = robust_scale_squared(buffers, radius);
+fn normal_equations(buffers: &mut Buffers, radius: f64, params: &RefineParams) -> Normal {
+    let inset_px = params.inset_px;
+    let scale_squared = robust_scale_squared(buffers, radius, params.least_scale_px);
     let mut normal = Normal {
         matrix: Matrix6::zeros(),
         vector: Vector6::zeros(),
@@ -345,7 +349,7 @@ fn finish(
     buffers: &mut Buffers,
 ) -> Refined {
     let mut evidence = collect(mesh, views, &pose, params.final_search_px, true, params, buffers);
-    let normal = normal_equations(buffers, params.final_search_px, params.inset_px);
+    let normal = normal_equations(buffers, params.final_search_px, params);
     for ((rows, inset), evidence) in buffers.by_view().zip(&mut evidence) {
         evidence.inset_px = -inset;
         for row in rows {
