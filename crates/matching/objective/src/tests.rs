@@ -127,7 +127,6 @@ fn each_is_lowest_at_the_right_pose_in_one_view_two_and_three() {
         for kind in Kind::ALL {
             let mut objective = entered(kind, &body, &targets);
             let least = objective.value(&truth());
-            println!("{:15} {views} views: {least:.4} mm at the truth", kind.name());
             // The grid's cells are 1.5 mm; the field's errors and a mean over views are far below.
             let expected = if kind == Kind::SplineGrid { 0.5 } else { 0.03 };
             assert!(least < expected * views as f64, "{}: {least}", kind.name());
@@ -196,11 +195,6 @@ fn rows_are_the_gradient_of_the_value() {
             }
             errors.sort_by(f64::total_cmp);
             let middle = errors[errors.len() / 2];
-            println!(
-                "{:15} stage {stage}: {middle:.2e}, worst {:.2e}",
-                kind.name(),
-                errors[errors.len() - 1]
-            );
             assert!(middle < tolerance, "{} {stage}: {errors:?}", kind.name());
         }
     }
@@ -263,8 +257,9 @@ fn a_search_finds_the_pose_by_each_of_them() {
     let targets = targets(&rim, 2, |_, c| vec![c]);
     for kind in Kind::ALL {
         let (mm, deg, calls) = found(kind, &body, &targets);
-        println!("{:15} {mm:.4} mm, {deg:.4} degrees, {calls} calls", kind.name());
         let (most_mm, most_deg) = if kind == Kind::SplineGrid { (0.5, 1.0) } else { (0.05, 0.15) };
+        let most = if kind.has_rows() { 60 } else { 800 };
+        assert!(calls <= most, "{}: {calls} calls", kind.name());
         assert!(mm < most_mm && deg < most_deg, "{}: {mm} mm, {deg} degrees", kind.name());
     }
 }
@@ -283,7 +278,6 @@ fn edges_that_lie_inside_as_a_whole_do_not_move_the_body_where_that_is_solved_fo
     for kind in [Kind::ImageToModel, Kind::Symmetric, Kind::InversePoint] {
         let held = found_with(kind, &body, &inside, &settings());
         let free = found_with(kind, &body, &inside, &Settings { inset_px: 1.0, ..settings() });
-        println!("{:15} held {held:?}, free {free:?}", kind.name());
         assert!(free.0 < 0.01 && free.1 < 0.08, "{}: {free:?}", kind.name());
         assert!(held.0 + held.1 > 3.0 * (free.0 + free.1), "{}: {held:?}", kind.name());
     }
@@ -311,7 +305,6 @@ fn robust_ones_stand_missing_and_wrong_contour() {
     });
     for kind in [Kind::ImageToModel, Kind::Symmetric, Kind::InversePoint] {
         let (mm, deg, _) = found(kind, &body, &spoilt);
-        println!("{:15} {mm:.4} mm, {deg:.4} degrees", kind.name());
         assert!(mm < 0.1 && deg < 0.3, "{}: {mm} mm, {deg} degrees", kind.name());
     }
 }

@@ -105,7 +105,7 @@ fn what_cannot_be_searched_is_said() {
     assert_eq!(refused, Err(expected));
     for (change, key) in [
         (SearchParams { starts: 0, ..SearchParams::default() }, "search.starts"),
-        (SearchParams { fine_px: 50.0, ..SearchParams::default() }, "search.fine_px"),
+        (SearchParams { fine_px: 90.0, ..SearchParams::default() }, "search.fine_px"),
         (SearchParams { tolerance_mm: f64::NAN, ..SearchParams::default() }, "search.tolerance_mm"),
     ] {
         let Err(MatchError::Parameter { name, .. }) = change.check() else { panic!("{key} was taken") };
