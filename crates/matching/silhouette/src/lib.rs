@@ -12,8 +12,9 @@
 //! counted against edges of their direction at every place of every picture; what a view finds is held against the others depth by
 //! depth, and the best settle on the nearest edges in a few steps.
 //!
-//! **Guaranteed:** the same candidates for the same curves; all that fit nearly as well as the best, mirror basins among them.
-//! **Not guaranteed:** that the right one is the first: a descent from each decides ([`descend`]).
+//! **Guaranteed:** the same candidates for the same curves; of those found, all that fit nearly as well as the best are given, so that
+//! mirror basins can be compared. **Not guaranteed:** that the right one is the first, or found at all: a descent from each decides
+//! ([`descend`]), and its verdict.
 
 mod descend;
 mod octahedron;
