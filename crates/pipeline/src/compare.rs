@@ -450,34 +450,31 @@ impl Line {
 
 /// The line of a contender; one of `found` a scene.
 fn line(contender: &Contender, scenes: &[Scene<'_>], found: &[Result<Found, String>]) -> Line {
-    let done: Vec<(&Scene<'_>, &[(Ended, f64)], f64)> = scenes
-        .iter()
-        .zip(found)
-        .filter_map(|(scene, found)| found.as_ref().ok().map(|f| (scene, f.ends.as_slice(), f.prepared_s)))
-        .collect();
+    let done: Vec<(&Scene<'_>, &Found)> =
+        scenes.iter().zip(found).filter_map(|(scene, found)| Some((scene, found.as_ref().ok()?))).collect();
     let failed = found.iter().filter_map(|f| f.as_ref().err());
     let note = match (failed.clone().next(), failed.count()) {
         (Some(why), count) => format!("{count} of {} frames: {why}", scenes.len()),
         _ => String::new(),
     };
-    let searches: usize = done.iter().map(|(_, ends, _)| ends.len()).sum();
+    let searches: usize = done.iter().map(|(_, found)| found.ends.len()).sum();
     if searches == 0 {
         return Line { note, ..Line::empty(contender.objective, contender.optimiser) };
     }
     let per_search = |sum: f64| sum / searches as f64;
-    let all = || done.iter().flat_map(|(scene, ends, _)| ends.iter().map(move |(e, s)| (*scene, e, *s)));
+    let all = || done.iter().flat_map(|(scene, found)| found.ends.iter().map(move |(e, s)| (*scene, e, *s)));
     let error = |scene: &Scene<'_>, pose: &Pose| {
         let PoseError { translation_mm, rotation_rad } = pose.error_against(&scene.known?, scene.centroid());
         Some([translation_mm, rotation_rad.to_degrees()])
     };
     let right = all().filter_map(|(scene, e, _)| error(scene, &e.pose));
     let right: Vec<bool> = right.map(|[mm, deg]| mm < RIGHT.0 && deg < RIGHT.1).collect();
-    let answers = done.iter().filter_map(|(scene, ends, _)| {
-        let ends: Vec<Ended> = ends.iter().map(|(e, _)| *e).collect();
+    let answers = done.iter().filter_map(|(scene, found)| {
+        let ends: Vec<Ended> = found.ends.iter().map(|(e, _)| *e).collect();
         error(scene, &lowest(&ends)?.pose)
     });
     let answers: Vec<[f64; 2]> = answers.collect();
-    let prepared: f64 = done.iter().map(|(.., s)| s).sum();
+    let prepared: f64 = done.iter().map(|(_, found)| found.prepared_s).sum();
     Line {
         searches,
         converged: per_search(all().filter(|(_, e, _)| e.converged).count() as f64),
@@ -503,11 +500,12 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
 }
 
 /// Standard deviation over a frame's searches that came to rest, root of the mean over frames and axes: mm and degrees.
-fn spread(done: &[(&Scene<'_>, &[(Ended, f64)], f64)]) -> Option<[f64; 2]> {
+fn spread(done: &[(&Scene<'_>, &Found)]) -> Option<[f64; 2]> {
     let mut sums = [0.0, 0.0];
     let mut degrees_of_freedom = 0;
-    for (scene, ends, _) in done {
-        let rested: Vec<&Pose> = ends.iter().filter(|(e, _)| e.converged).map(|(e, _)| &e.pose).collect();
+    for (scene, found) in done {
+        let rested: Vec<&Pose> =
+            found.ends.iter().filter(|(e, _)| e.converged).map(|(e, _)| &e.pose).collect();
         let Some(first) = rested.first().filter(|_| rested.len() > 1) else { continue };
         let off = |pose: &&Pose| {
             let moved = pose.transform(scene.centroid()) - first.transform(scene.centroid());

@@ -7,14 +7,16 @@
 //! **Symmetric.** The mean of this and of the outline's points to edges (as `method = "rim"` measures), which alone says that outline without any
 //! edge is wrong.
 //!
-//! **Not in it:** a bias of edges to one side of the outline; `method = "rim"` solves for it.
+//! In the last stage the edges of a view may lie inside the outline as a whole, as X-ray edges do, by what makes the sum least
+//! ([`Settings::inset_px`]).
 
 use biplane_edge_field::EdgeField;
-use biplane_geometry::{EdgePoint, Point2, Point3, Pose};
+use biplane_geometry::{EdgePoint, Point2, Point3, Pose, Vector2};
 use biplane_optimiser::Row;
 use biplane_outline::{Outline, RimMesh, Sampling};
+use nalgebra::Vector6;
 
-use crate::kernel::{Kernel, min_cosine, scale_px};
+use crate::kernel::{Kernel, Partner, Stage, settle};
 use crate::motion::Eye;
 use crate::near::Near;
 use crate::{Body, NO_OUTLINE, Objective, Settings, Target};
@@ -30,6 +32,7 @@ pub struct EdgeDistance<'a> {
     stage: usize,
     outline: Outline,
     near: Near,
+    partners: Vec<Partner>,
 }
 
 #[derive(Debug)]
@@ -79,37 +82,41 @@ impl<'a> EdgeDistance<'a> {
             stage: settings.stages.max(1) - 1,
             outline: Outline::new(),
             near: Near::default(),
+            partners: Vec::new(),
         }
     }
 
     fn evaluate(&mut self, pose: &Pose, mut rows: Option<&mut Vec<Row>>) -> f64 {
-        let Self { rim, views, settings, from_model, stage, outline, near } = self;
+        let Self { rim, views, settings, from_model, stage, outline, near, partners } = self;
         let centre = pose.transform(rim.centroid());
+        let stage = Stage::of(settings, *stage);
         let mut sum = 0.0;
         for view in views.iter() {
-            let sampling = Sampling { step_px: settings.spacing_px };
-            outline.trace(rim, pose, &view.eye.fluoroscope, sampling);
+            outline.trace(rim, pose, &view.eye.fluoroscope, Sampling { step_px: settings.spacing_px });
             if outline.points().len() < 2 || view.points.is_empty() {
                 sum += NO_OUTLINE;
                 continue;
             }
-            let compare = Compare {
-                view,
-                outline,
-                centre,
-                kernel: Kernel::new(scale_px(settings, *stage) * view.mm_per_px),
-                reach: settings.reach_px,
-                cosine: min_cosine(settings, *stage),
-                contrast: settings.contrast,
-            };
+            let kernel = Kernel::new(stage.scale_px * view.mm_per_px);
+            let with_rows = rows.is_some();
+            let compare = Compare { view, outline, centre, stage, contrast: settings.contrast, with_rows };
+            partners.clear();
+            let mut alone = 0.0;
             if *from_model < 1.0 {
                 near.fill(outline.points());
-                let share = 1.0 - *from_model;
-                sum += share * compare.image_to_model(near, share, rows.as_deref_mut());
+                alone += compare.image_to_model(near, 1.0 - *from_model, partners);
             }
             if *from_model > 0.0 {
-                sum += *from_model * compare.model_to_image(*from_model, rows.as_deref_mut());
+                match compare.model_to_image(*from_model, partners) {
+                    Some(share) => alone += share,
+                    None => {
+                        sum += NO_OUTLINE;
+                        continue;
+                    }
+                }
             }
+            sum += settle(kernel, partners, stage.inset_px * view.mm_per_px, rows.as_deref_mut());
+            sum += alone * kernel.value(stage.reach_px * view.mm_per_px);
         }
         sum
     }
@@ -120,26 +127,29 @@ struct Compare<'v> {
     view: &'v View,
     outline: &'v Outline,
     centre: Point3,
-    kernel: Kernel,
-    reach: f64,
-    cosine: f64,
+    stage: Stage,
     contrast: f64,
+    with_rows: bool,
 }
 
 impl Compare<'_> {
-    /// What a point without a partner counts.
-    fn alone(&self) -> f64 {
-        self.kernel.value(self.reach * self.view.mm_per_px)
+    fn speed(&self, world: &Point3, along: &Vector2) -> Vector6<f64> {
+        if !self.with_rows {
+            return Vector6::zeros();
+        }
+        self.view.eye.pixel_by_twist(world, along, &self.centre) * -self.view.mm_per_px
     }
 
-    fn image_to_model(&self, near: &Near, share: f64, mut rows: Option<&mut Vec<Row>>) -> f64 {
-        let (view, samples) = (self.view, self.outline.points());
-        let each = 1.0 / view.points.len() as f64;
-        let mut sum = 0.0;
+    /// Adds the partners of edge points, which count `whole` together; the share of those without one.
+    fn image_to_model(&self, near: &Near, whole: f64, partners: &mut Vec<Partner>) -> f64 {
+        let (view, samples, stage) = (self.view, self.outline.points(), &self.stage);
+        let share = whole / view.points.len() as f64;
+        let mut alone = 0.0;
         for edge in &view.points {
             let normal = edge.direction * self.contrast;
-            let Some(foot) = near.nearest(samples, &edge.position, &normal, self.reach, self.cosine) else {
-                sum += each * self.alone();
+            let Some(foot) = near.nearest(samples, &edge.position, &normal, stage.reach_px, stage.cosine)
+            else {
+                alone += share;
                 continue;
             };
             let sample = &samples[foot.sample];
@@ -148,27 +158,22 @@ impl Compare<'_> {
             let (px, along) = if foot.inside || foot.distance < 1e-9 {
                 (off.dot(&sample.normal), sample.normal)
             } else {
-                (foot.distance, off / foot.distance)
+                let outward = if off.dot(&sample.normal) < 0.0 { -1.0 } else { 1.0 };
+                (outward * foot.distance, off * (outward / foot.distance))
             };
-            let residual = px * view.mm_per_px;
-            sum += each * self.kernel.value(residual);
-            if let Some(rows) = &mut rows {
-                let world = view.eye.point(&foot.pixel, sample.depth);
-                let speed = view.eye.pixel_by_twist(&world, &along, &self.centre);
-                rows.push(Row {
-                    residual,
-                    weight: share * each * self.kernel.weight(residual),
-                    derivative: speed * -view.mm_per_px,
-                });
-            }
+            let world = view.eye.point(&foot.pixel, sample.depth);
+            let derivative = self.speed(&world, &along);
+            partners.push(Partner { residual: px * view.mm_per_px, share, derivative });
         }
-        sum
+        alone
     }
 
-    fn model_to_image(&self, share: f64, mut rows: Option<&mut Vec<Row>>) -> f64 {
-        let view = self.view;
-        let (mut sum, mut length) = (0.0, 0.0);
-        let first = rows.as_deref().map_or(0, Vec::len);
+    /// Adds the partners of the outline's points on the picture, which count `whole` together; the share of those without one, or `None` if none is
+    /// on the picture.
+    fn model_to_image(&self, whole: f64, partners: &mut Vec<Partner>) -> Option<f64> {
+        let (view, stage) = (self.view, &self.stage);
+        let first = partners.len();
+        let (mut alone, mut length) = (0.0, 0.0);
         for p in self.outline.points() {
             // What lies beside the picture cannot have an edge.
             if !view.eye.fluoroscope.on_image(&p.pixel, 2.0) {
@@ -176,32 +181,20 @@ impl Compare<'_> {
             }
             length += p.length_px;
             let direction = p.normal * self.contrast;
-            let Some(edge) = view.field.nearest(&p.pixel, &direction, self.reach, self.cosine) else {
-                sum += p.length_px * self.alone();
+            let Some(edge) = view.field.nearest(&p.pixel, &direction, stage.reach_px, stage.cosine) else {
+                alone += p.length_px;
                 continue;
             };
             // Where the outline's normal meets the edge's tangent, but no farther than the edge point itself.
             let across = edge.direction * self.contrast;
             let off = edge.position - p.pixel;
             let px = (across.dot(&off) / across.dot(&p.normal)).clamp(-off.norm(), off.norm());
-            let residual = px * view.mm_per_px;
-            sum += p.length_px * self.kernel.value(residual);
-            if let Some(rows) = &mut rows {
-                let speed = view.eye.pixel_by_twist(&p.world, &p.normal, &self.centre);
-                rows.push(Row {
-                    residual,
-                    weight: share * p.length_px * self.kernel.weight(residual),
-                    derivative: speed * -view.mm_per_px,
-                });
-            }
+            let derivative = self.speed(&p.world, &p.normal);
+            partners.push(Partner { residual: px * view.mm_per_px, share: p.length_px, derivative });
         }
-        if length <= 0.0 {
-            return NO_OUTLINE;
-        }
-        for row in rows.into_iter().flat_map(|rows| rows.iter_mut().skip(first)) {
-            row.weight /= length;
-        }
-        sum / length
+        let share = whole / length;
+        partners[first..].iter_mut().for_each(|p| p.share *= share);
+        (length > 0.0).then_some(alone * share)
     }
 }
 

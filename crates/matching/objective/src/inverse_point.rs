@@ -13,9 +13,10 @@ use std::sync::Arc;
 
 use biplane_geometry::{EdgePoint, Point3, Pose, Vector2, Vector3};
 use biplane_optimiser::Row;
+use nalgebra::Vector6;
 
 use crate::edges::thinned;
-use crate::kernel::{Kernel, min_cosine, scale_px};
+use crate::kernel::{Kernel, Partner, Stage, settle};
 use crate::motion::{Eye, by_twist};
 use crate::{Body, DistanceField, NO_OUTLINE, Objective, Settings, Target};
 
@@ -30,6 +31,7 @@ pub struct InversePoint {
     views: Vec<View>,
     settings: Settings,
     stage: usize,
+    partners: Vec<Partner>,
 }
 
 #[derive(Debug)]
@@ -66,6 +68,7 @@ impl InversePoint {
             views: targets.iter().map(view).collect(),
             settings: *settings,
             stage: settings.stages.max(1) - 1,
+            partners: Vec::new(),
         }
     }
 
@@ -74,52 +77,59 @@ impl InversePoint {
         let back = pose.inverse();
         let rotation = pose.rotation().to_rotation_matrix();
         let (middle, reach) = self.field.ball();
-        let cosine = min_cosine(&self.settings, self.stage);
-        let last = self.stage + 1 >= self.settings.stages.max(1);
+        let stage = Stage::of(&self.settings, self.stage);
         let mut sum = 0.0;
         for view in &self.views {
             if view.rays.is_empty() {
                 sum += NO_OUTLINE;
                 continue;
             }
-            let scale = scale_px(&self.settings, self.stage) * view.mm_per_px;
-            let kernel = Kernel::new(scale);
-            let alone = kernel.value(self.settings.reach_px * view.mm_per_px);
-            let each = 1.0 / view.rays.len() as f64;
+            let share = 1.0 / view.rays.len() as f64;
+            let kernel = Kernel::new(stage.scale_px * view.mm_per_px);
+            let reach_mm = stage.reach_px * view.mm_per_px;
+            self.partners.clear();
+            let mut alone = 0.0;
             let source = back.transform(view.eye.fluoroscope.source());
             let across = view.eye.across();
             for (edge, direction) in &view.rays {
                 let ray = rotation.inverse() * direction;
                 let middle_s = (middle - source).dot(&ray);
-                let found =
-                    closest(&self.field, &source, &ray, (middle_s - reach).max(0.0), middle_s + reach);
+                let ends = [(middle_s - reach).max(0.0), middle_s + reach];
+                let Some(found) = closest(&self.field, &source, &ray, ends, reach_mm) else {
+                    alone += share;
+                    continue;
+                };
                 let gradient = rotation * found.gradient;
-                if last {
-                    let growth = Vector2::new(across[0].dot(&gradient), across[1].dot(&gradient));
-                    let along = growth.dot(&edge.direction) * self.settings.contrast;
-                    if along < cosine * growth.norm() {
-                        sum += each * alone;
-                        continue;
-                    }
+                let growth = Vector2::new(across[0].dot(&gradient), across[1].dot(&gradient));
+                let along = growth.dot(&edge.direction) * self.settings.contrast;
+                // Far off, the nearest part of a body is often another one than the edge is of.
+                let against = stage.last && along < stage.cosine * growth.norm();
+                if against {
+                    alone += share;
+                    continue;
                 }
-                sum += each * kernel.value(found.distance);
-                if let Some(rows) = &mut rows {
-                    let world = pose.transform(&found.at);
-                    rows.push(Row {
-                        residual: found.distance,
-                        weight: each * kernel.weight(found.distance),
-                        // The body moves, the ray stays.
-                        derivative: -by_twist(&gradient, &world, &centre),
-                    });
-                }
+                let derivative = match rows {
+                    // The body moves, the ray stays.
+                    Some(_) => -by_twist(&gradient, &pose.transform(&found.at), &centre),
+                    None => Vector6::zeros(),
+                };
+                self.partners.push(Partner { residual: found.distance, share, derivative });
             }
+            sum += settle(kernel, &self.partners, stage.inset_px * view.mm_per_px, rows.as_deref_mut());
+            sum += alone * kernel.value(reach_mm);
         }
         sum
     }
 }
 
-/// The least distance along a ray (unit, model) between two places on it.
-fn closest(field: &DistanceField, source: &Point3, ray: &Vector3, from: f64, to: f64) -> Closest {
+/// The least distance along a ray (unit, model) between two places on it; `None` where it is farther from zero than `reach`.
+fn closest(
+    field: &DistanceField,
+    source: &Point3,
+    ray: &Vector3,
+    [from, to]: [f64; 2],
+    reach: f64,
+) -> Option<Closest> {
     let place = |s: f64| source + ray * s;
     // A distance falls by no more than the way, so what is far from the surface is passed quickly.
     let step = 1.5 * field.cell_mm();
@@ -132,16 +142,21 @@ fn closest(field: &DistanceField, source: &Point3, ray: &Vector3, from: f64, to:
         }
         s += (distance - least).max(step);
     }
+    // Between places of the first look the distance differs by no more than the way.
+    if least.abs() > reach + step {
+        return None;
+    }
     let look = |s: f64| {
         let (distance, gradient) = field.cubic(&place(s));
         (Closest { at: place(s), distance, gradient }, gradient.dot(ray))
     };
+    let within = |found: Closest| (found.distance.abs() <= reach).then_some(found);
     // The derivative changes its sign between the places beside: secants that keep to both sides (Illinois).
     let (mut a, mut b) = (best - step, best + step);
     let (mut slope_a, mut slope_b) = (look(a).1, look(b).1);
     let mut found = look(best);
     if slope_a >= 0.0 || slope_b <= 0.0 {
-        return found.0;
+        return within(found.0);
     }
     // +1 where the last place was on the side of `b`, -1 on that of `a`.
     let mut side = 0;
@@ -149,7 +164,7 @@ fn closest(field: &DistanceField, source: &Point3, ray: &Vector3, from: f64, to:
         let s = (a * slope_b - b * slope_a) / (slope_b - slope_a);
         found = look(s);
         let slope = found.1;
-        if slope.abs() < 1e-7 || b - a < 1e-9 {
+        if slope.abs() < 1e-6 {
             break;
         }
         if slope < 0.0 {
@@ -162,7 +177,7 @@ fn closest(field: &DistanceField, source: &Point3, ray: &Vector3, from: f64, to:
             side = 1;
         }
     }
-    found.0
+    within(found.0)
 }
 
 impl Objective for InversePoint {

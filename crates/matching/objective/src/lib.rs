@@ -125,6 +125,9 @@ pub struct Settings {
     pub fine_px: f64,
     /// Stages from wide to fine.
     pub stages: usize,
+    /// By how much edges lie inside the outline as a whole, px (1 sigma): solved for in each view, in the last stage of robust objectives, up to twice as
+    /// much; 0 holds it at zero.
+    pub inset_px: f64,
 }
 
 /// The objectives.

@@ -16,14 +16,16 @@ use nalgebra::{DMatrix, Matrix6, RowSVector, SMatrix, SVector, Vector6};
 
 use crate::View;
 use crate::refine::{
-    Buffers, CORRELATION_PX, LEAST_SCALE_PX, RefineParams, Row, collect_anew, robust_scale_squared,
-    robust_weight,
+    Buffers, CORRELATION_PX, RefineParams, Row, collect_anew, robust_scale_squared, robust_weight,
 };
 
 /// Unknowns of the step: six of the pose, an inset a view, and the first view's own motion.
 const UNKNOWN: usize = 9;
 /// Times the step is weighed anew.
 const REWEIGHED: usize = 12;
+
+/// Parameters of a view's place.
+const VIEW: usize = CalibrationUncertainty::PARAMETERS;
 
 /// How far two views disagree about where a body is, along the normal of the plane through it and both sources.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +50,7 @@ pub fn disagreement(
     let normal = to_first.cross(&to_second).try_normalize(1e-6 * to_first.norm() * to_second.norm())?;
     let mut buffers = Buffers::default();
     collect_anew(mesh, views, pose, params, &mut buffers);
-    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px, LEAST_SCALE_PX);
+    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px, params.least_scale_px);
     // The pose, an inset a view, and how far the first view's outline is moved along the normal: all at once, because turning the
     // body takes up a part of what the views disagree about.
     let rows = || {
@@ -111,38 +113,19 @@ pub fn pose_covariance_of_calibration(
     uncertainty: &CalibrationUncertainty,
     params: &RefineParams,
 ) -> Option<Matrix6<f64>> {
-    const VIEW: usize = CalibrationUncertainty::PARAMETERS;
-    let rows = &uncertainty.covariance;
-    let parameters = VIEW * views.len();
-    let fits = uncertainty.source_to_detector_mm.len() == views.len()
-        && rows.len() == parameters
-        && rows.iter().all(|row| row.len() == parameters);
-    if !fits {
-        return None;
-    }
-    let mut buffers = Buffers::default();
-    collect_anew(mesh, views, pose, params, &mut buffers);
-    let scale_squared = robust_scale_squared(&mut buffers, params.final_search_px, LEAST_SCALE_PX);
+    let covariance = covariance_of(uncertainty, views.len())?;
     let mut normal = Matrix6::zeros();
-    let mut mixed = DMatrix::<f64>::zeros(6, parameters);
-    for (number, (rows, inset)) in buffers.by_view().enumerate() {
-        let (view, distance) = (&views[number], uncertainty.source_to_detector_mm[number]);
+    let mut mixed = DMatrix::<f64>::zeros(6, covariance.nrows());
+    for (number, responses) in responses(mesh, views, pose, uncertainty, params).iter().enumerate() {
         // The inset of a view takes up what is common to its outline.
         let (mut sum, mut by_pose, mut by_view) = (0.0, Vector6::zeros(), RowSVector::<f64, VIEW>::zeros());
         let mut own_mixed = SMatrix::<f64, 6, VIEW>::zeros();
-        for row in rows {
-            let point = buffers.sample(number, row);
-            let Some(by_placement) = view.fluoroscope.pixel_by_placement(&point.world, distance) else {
-                continue;
-            };
-            let moved = point.normal.transpose() * by_placement;
-            // As the match weighs, and as its weights answer to a small motion.
-            let weight = row.weight() * robust_weight(scale_squared, row.residual - inset);
-            normal += row.derivative * row.derivative.transpose() * weight;
-            own_mixed += row.derivative * moved * weight;
+        for Response { by_pose: own, by_view: moved, weight, .. } in responses {
+            normal += own * own.transpose() * *weight;
+            own_mixed += own * moved * *weight;
             sum += weight;
-            by_pose += row.derivative * weight;
-            by_view += moved * weight;
+            by_pose += own * *weight;
+            by_view += moved * *weight;
         }
         if sum > 0.0 && params.inset_px > 0.0 {
             normal -= by_pose * by_pose.transpose() / sum;
@@ -151,8 +134,76 @@ pub fn pose_covariance_of_calibration(
         mixed.fixed_view_mut::<6, VIEW>(0, VIEW * number).copy_from(&own_mixed);
     }
     let answer = -(normal.try_inverse()? * mixed);
-    let covariance = DMatrix::from_fn(parameters, parameters, |i, j| rows[i][j]);
     let found = &answer * covariance * answer.transpose();
     let found = Matrix6::from_fn(|i, j| found[(i, j)]);
     found.iter().all(|v| v.is_finite()).then_some(found)
+}
+
+/// How far the uncertainty of the views' places moves outlines across themselves, px: root mean square over the outline points that found
+/// their edge. `None` where there are none, or `uncertainty` is not of these views.
+pub(crate) fn outline_sigma_of_calibration(
+    mesh: &RimMesh,
+    views: &[View],
+    pose: &Pose,
+    uncertainty: &CalibrationUncertainty,
+    params: &RefineParams,
+) -> Option<f64> {
+    let covariance = covariance_of(uncertainty, views.len())?;
+    let (mut squared, mut length) = (0.0, 0.0);
+    for (number, responses) in responses(mesh, views, pose, uncertainty, params).iter().enumerate() {
+        let own = covariance.fixed_view::<VIEW, VIEW>(VIEW * number, VIEW * number);
+        for response in responses {
+            squared += (response.by_view * own * response.by_view.transpose())[0] * response.length;
+            length += response.length;
+        }
+    }
+    (length > 0.0).then(|| (squared / length).sqrt())
+}
+
+/// The covariance as a matrix, if it is of so many views.
+fn covariance_of(uncertainty: &CalibrationUncertainty, views: usize) -> Option<DMatrix<f64>> {
+    let (rows, parameters) = (&uncertainty.covariance, VIEW * views);
+    let fits = uncertainty.source_to_detector_mm.len() == views
+        && rows.len() == parameters
+        && rows.iter().all(|row| row.len() == parameters);
+    fits.then(|| DMatrix::from_fn(parameters, parameters, |i, j| rows[i][j]))
+}
+
+/// How an outline point moves across its outline.
+struct Response {
+    /// By the pose, px/mm and px/rad.
+    by_pose: Vector6<f64>,
+    /// By the place of its view, px/mm and px/rad.
+    by_view: RowSVector<f64, VIEW>,
+    /// As the match weighs it: by the squared residual in mm.
+    weight: f64,
+    /// Length of the outline it stands for, px.
+    length: f64,
+}
+
+/// The outline points of each view that found their edge.
+fn responses(
+    mesh: &RimMesh,
+    views: &[View],
+    pose: &Pose,
+    uncertainty: &CalibrationUncertainty,
+    params: &RefineParams,
+) -> Vec<Vec<Response>> {
+    let mut buffers = Buffers::default();
+    collect_anew(mesh, views, pose, params, &mut buffers);
+    let of_view = |(number, (rows, _)): (usize, (&[Row], f64))| {
+        let (view, distance) = (&views[number], uncertainty.source_to_detector_mm[number]);
+        let response = |row: &Row| {
+            let point = buffers.sample(number, row);
+            Some(Response {
+                by_pose: row.derivative,
+                by_view: point.normal.transpose()
+                    * view.fluoroscope.pixel_by_placement(&point.world, distance)?,
+                weight: row.weight(),
+                length: row.length,
+            })
+        };
+        rows.iter().filter_map(response).collect()
+    };
+    buffers.by_view().enumerate().map(of_view).collect()
 }

@@ -44,6 +44,9 @@ pub struct RefineParams {
     pub still_mm: f64,
     /// Steps at most with the last search radius.
     pub most_steps: u32,
+    /// Residuals of about this size are never taken for outliers, px. Differences between mesh and body ([`LEAST_SCALE_PX`]), or
+    /// what a calibration that is not sure makes of them.
+    pub least_scale_px: f64,
 }
 
 /// Far: about how many samples of the outline a view has, at least so many px apart.
@@ -76,9 +79,8 @@ const HELD_MM: f64 = 0.02;
 const SWING_MM: f64 = 0.01;
 /// Largest step, mm of the centroid or of the surface by turning.
 const LONGEST_STEP_MM: f64 = 25.0;
-/// The robust weight's scale is never below this, px: below it are the differences between mesh and body, and what an error of the
-/// calibration leaves between the views, to which a pose should answer in proportion.
-pub(crate) const LEAST_SCALE_PX: f64 = 0.8;
+/// The robust weight's scale is never below this, px: below it are the differences between mesh and body.
+pub(crate) const LEAST_SCALE_PX: f64 = 0.3;
 /// Noise of an inset seen along one correlation length, px.
 const INSET_NOISE_PX: f64 = 0.3;
 /// The robust weight's least scale while far, px.
@@ -386,7 +388,7 @@ fn settle(
             trace(mesh, views, &pose, last, buffers);
         }
         collect(mesh, views, &pose, radius, last, params, buffers);
-        let normal = normal_equations(buffers, radius, params.inset_px, LEAST_SCALE_PX);
+        let normal = normal_equations(buffers, radius, params.inset_px, params.least_scale_px);
         let Some(twist) = solve(&normal, mesh.radius_of_gyration()) else { break };
         pose = hold(&pose, &twist, &pose.transform(mesh.centroid()), buffers);
         steps += 1;
@@ -572,7 +574,7 @@ fn solve(normal: &Normal, arm: f64) -> Option<Twist> {
 
 /// The answer from the rows as they are.
 fn finish(pose: Pose, steps: u32, still: bool, params: &RefineParams, buffers: &mut Buffers) -> Refined {
-    let normal = normal_equations(buffers, params.final_search_px, params.inset_px, LEAST_SCALE_PX);
+    let normal = normal_equations(buffers, params.final_search_px, params.inset_px, params.least_scale_px);
     let mut evidence = buffers.evidence.clone();
     for ((rows, inset), evidence) in buffers.by_view().zip(&mut evidence) {
         evidence.inset_px = -inset;

@@ -4,82 +4,14 @@
 // A test whose set-up fails has failed.
 #![allow(clippy::unwrap_used)]
 
-use std::path::{Path, PathBuf};
+mod scene;
 
-use biplane_artifact::{Calibration, Curves};
+use std::path::Path;
+
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::{Curve, EdgePoint, Mesh, Point2, Point3, Pose, Vector2, Vector3};
 use biplane_optimisation::{BinghamParams, BinghamView, Descent, descend};
+use scene::{mesh, numbers, of_thesis, posed, workspace};
 use serde_json::Value;
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
-}
-
-fn numbers<const N: usize>(value: &Value) -> [f64; N] {
-    std::array::from_fn(|i| value[i].as_f64().unwrap())
-}
-
-/// A binary STL: 80 bytes, the number of triangles, then 50 bytes each.
-fn mesh(path: &Path) -> Mesh {
-    let bytes = std::fs::read(path).unwrap();
-    let float = |b: &[u8]| f64::from(f32::from_le_bytes(b.try_into().unwrap()));
-    let corner =
-        |t: &[u8], k: usize| Point3::from(std::array::from_fn(|i| float(&t[12 + 12 * k + 4 * i..][..4])));
-    let soup: Vec<[Point3; 3]> =
-        bytes[84..].chunks_exact(50).map(|t| std::array::from_fn(|k| corner(t, k))).collect();
-    Mesh::from_soup(&soup).unwrap()
-}
-
-/// A body of the scene at one of its poses, seen by both fluoroscopes.
-struct Posed {
-    truth: [f64; 6],
-    pose: Pose,
-    views: Vec<BinghamView>,
-}
-
-fn of_thesis(v: &[f64; 6]) -> Pose {
-    let a = [v[3], v[4], v[5]].map(f64::to_radians);
-    Pose::from_thesis(a[0], a[1], a[2], Vector3::new(v[0], v[1], v[2]), Vector3::zeros())
-}
-
-fn posed(folder: &Path, scene: &Value, body: &str, outline: &str, number: usize) -> Posed {
-    let pose = &scene["objects"][body]["poses"][number];
-    let ([x, y, z], [a, b, c]) = (numbers(&pose["t"]), numbers(&pose["euler"]));
-    let truth = [x, y, z, a, b, c];
-    let views = scene["views"].as_array().unwrap().iter().map(|view| {
-        let v = |key: &str| Vector3::from(numbers::<3>(&view[key]));
-        let (source, centre, along_x, along_y, n) = (v("source"), v("centre"), v("u"), v("v"), v("n"));
-        let (l, pixel) = (view["l"].as_f64().unwrap(), view["pixel"].as_f64().unwrap());
-        // Pixel 511.5 + (p - centre) . axis / pixel of the point p where the ray meets the detector.
-        let row = |axis: &Vector3| -> [f64; 3] {
-            let middle = 511.5 - (centre - source).dot(axis) / pixel;
-            (axis * (l / pixel) + n * middle).into()
-        };
-        let fluoroscope = Fluoroscope::from(&Calibration {
-            view: view["name"].as_str().unwrap().to_owned(),
-            size: [1024, 1024],
-            source: source.into(),
-            matrix: [row(&along_x), row(&along_y), n.into()],
-            distortion: None,
-        });
-        let file = pose["silhouettes"][outline][view["name"].as_str().unwrap()].as_str().unwrap();
-        let text = std::fs::read_to_string(folder.join(file)).unwrap();
-        let points = text.lines().map(|line| {
-            let (a, b) = line.split_once(',').unwrap();
-            let mm = |t: &str| 511.5 + t.trim().parse::<f64>().unwrap() / pixel;
-            EdgePoint {
-                position: Point2::new(mm(a), mm(b)),
-                direction: Vector2::x(),
-                strength: 1.0,
-                sigma_px: 0.1,
-            }
-        });
-        let curves = Curves(vec![Curve { points: points.collect(), closed: true }]);
-        BinghamView::new(fluoroscope, &curves, pixel)
-    });
-    Posed { truth, pose: of_thesis(&truth), views: views.collect() }
-}
 
 /// One start and what came of it.
 struct Single {
@@ -112,11 +44,18 @@ fn singles(
     let mut all = Vec::new();
     for number in poses {
         let posed = posed(folder, &scene, body, outline, number);
+        let views: Vec<BinghamView> = posed
+            .views
+            .iter()
+            .map(|(calibration, curves, pixel)| {
+                BinghamView::new(Fluoroscope::from(calibration), curves, *pixel)
+            })
+            .collect();
         for offset in offsets {
             let offset = numbers::<6>(offset);
             let start = of_thesis(&std::array::from_fn(|i| posed.truth[i] + offset[i]));
             let params = BinghamParams::default();
-            let found = descend(mesh.vertices(), &centroid, &posed.views, &start, &params);
+            let found = descend(mesh.vertices(), &centroid, &views, &start, &params);
             let error = found.pose.error_against(&posed.pose, &centroid);
             all.push(Single { found, mm: error.translation_mm, deg: error.rotation_rad.to_degrees() });
         }

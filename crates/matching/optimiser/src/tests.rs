@@ -81,12 +81,6 @@ fn all_find_the_bottom_of_a_valley_across_the_axes() {
         let (calls, near) = needs(optimiser);
         let found = optimiser.minimise(&mut Squares, &Vector6::repeat(5.0), &search(calls)).unwrap();
         let off = (found.at - bottom()).amax();
-        println!(
-            "{:20} {:5} calls, {off:.5} off, converged {}",
-            optimiser.name(),
-            found.calls,
-            found.converged
-        );
         assert!(off < near, "{}: {off} {found:?}", optimiser.name());
         assert!(
             found.converged || optimiser == Optimiser::SimulatedAnnealing,
@@ -107,12 +101,6 @@ fn a_kink_at_the_minimum_does_not_hold_them_up() {
         let start = bottom() + Vector6::new(3.0, -2.0, 1.0, -1.0, 2.0, -3.0);
         let found = optimiser.minimise(&mut Kink, &start, &search(2 * calls)).unwrap();
         let off = (found.at - bottom()).amax();
-        println!(
-            "{:20} {:5} calls, {off:.5} off, converged {}",
-            optimiser.name(),
-            found.calls,
-            found.converged
-        );
         assert!(off < 0.15, "{}: {off} {found:?}", optimiser.name());
     }
 }

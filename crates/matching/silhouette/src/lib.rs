@@ -12,8 +12,9 @@
 //! counted against edges of their direction at every place of every picture; what a view finds is held against the others depth by
 //! depth, and the best settle on the nearest edges in a few steps.
 //!
-//! **Guaranteed:** the same candidates for the same curves; all that fit nearly as well as the best, mirror basins among them.
-//! **Not guaranteed:** that the right one is the first: a descent from each decides ([`descend`]).
+//! **Guaranteed:** the same candidates for the same curves; of those found, all that fit nearly as well as the best are given, so that
+//! mirror basins can be compared. **Not guaranteed:** that the right one is the first, or found at all: a descent from each decides
+//! ([`descend`]), and its verdict.
 
 mod descend;
 mod octahedron;
@@ -38,7 +39,7 @@ use settle::settle;
 use support::Support;
 use tangent::{Tangent, hull, middle, tangents};
 use template::Templates;
-use vote::{EdgeMaps, misfit, vote};
+use vote::{EdgeMaps, vote};
 
 /// A pose to start from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,13 +66,8 @@ const TANGENTS: usize = 40;
 const LEAST_TANGENTS: usize = 16;
 /// A body is alone where this share of its tangents is left and the best pose touches them within this part of its radius.
 const ALONE: (f64, f64) = (0.6, 0.01);
-/// Candidates among other edges that are nearer than this, rad and mm, are one.
-const APART: (f64, f64) = (0.2, 12.0);
 /// Settled ones that are nearer than this, rad and mm, are one.
 const SAME: (f64, f64) = (0.08, 5.0);
-/// So many settle.
-const SETTLED: usize = 48;
-
 /// What fits worse than this many times the best candidate, and this many mm more, is none.
 const WORSE: (f64, f64) = (4.0, 0.5);
 
@@ -159,12 +155,11 @@ impl SilhouetteLibrary {
         let rays: Vec<(Point3, Vector3)> =
             seen.iter().filter_map(|s| Some((*s.view.source(), s.view.ray(&middle(s))?))).collect();
         let mut found = vote(&maps, &self.templates, meeting(&rays).as_ref());
-        found.extend(further.into_iter().map(|p| Place { misfit: misfit(&maps, &self.templates, &p), ..p }));
+        found.extend(further);
         let field =
             |s: &Seen| EdgeField::new(&Curves(vec![Curve { points: s.edges.clone(), closed: false }]), None);
         let fields: Vec<EdgeField> = seen.iter().map(field).collect();
-        let rough = distinct(found, APART, SETTLED);
-        let settled = rough.iter().map(|p| settle(&maps, &fields, &self.templates, p)).collect();
+        let settled = found.iter().map(|p| settle(&maps, &fields, &self.templates, p)).collect();
         distinct(settled, SAME, count)
     }
 

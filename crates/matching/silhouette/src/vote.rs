@@ -11,7 +11,7 @@ use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{EdgePoint, Point2, Point3, Vector2, Vector3};
 use nalgebra::{Matrix2, Matrix3, Rotation3, UnitQuaternion};
 
-use crate::place::Place;
+use crate::place::{Place, distinct};
 use crate::template::{TemplatePoint, Templates};
 
 /// Directions of edges that are told apart.
@@ -26,8 +26,12 @@ const FINER: usize = 4;
 const FINE: usize = CELLS * FINER;
 /// Turns of a template in the picture.
 const TURNS: usize = 36;
-/// What one view hands on to be held against the others.
-const HITS: usize = 3000;
+/// What one view hands on to be held against the others, and what one view alone keeps of each depth.
+const HITS: (usize, usize) = (3000, 600);
+/// Places that are nearer than this, rad and mm, are one.
+const APART: (f64, f64) = (0.2, 12.0);
+/// Places that are kept: of several views, and of each depth of one view.
+const PLACES: (usize, usize) = (48, 16);
 
 /// A picture's edges by direction.
 pub(crate) struct EdgeMaps<'a> {
@@ -222,10 +226,11 @@ struct Hit {
 }
 
 /// The best place of every template in a view where the body would have its centroid `away` mm from the source.
-fn scan(maps: &EdgeMaps, templates: &Templates, away: f64, hits: &mut Vec<Hit>) {
+fn scan(maps: &EdgeMaps, templates: &Templates, away: f64) -> Vec<Hit> {
+    let mut hits = Vec::with_capacity(templates.turned.len() * TURNS);
     let middle = Point2::from(maps.view.size().map(|n| n as f64 / 2.0));
-    let Some(ray) = maps.view.ray(&middle) else { return };
-    let Some(local) = Local::of(maps.view, &(maps.view.source() + ray * away)) else { return };
+    let Some(ray) = maps.view.ray(&middle) else { return hits };
+    let Some(local) = Local::of(maps.view, &(maps.view.source() + ray * away)) else { return hits };
     for direction in 0..templates.turned.len() {
         for turn in 0..TURNS {
             let (s, c) = (std::f64::consts::TAU * turn as f64 / TURNS as f64).sin_cos();
@@ -235,6 +240,7 @@ fn scan(maps: &EdgeMaps, templates: &Templates, away: f64, hits: &mut Vec<Hit>) 
             }
         }
     }
+    hits
 }
 
 /// The place where most of a template's points lie on edges of their direction.
@@ -272,11 +278,7 @@ fn best_place(maps: &EdgeMaps, points: &[TemplatePoint], laid: &Laid) -> Option<
     (count > 0).then(|| (count, [places[y].trailing_zeros(), y as u32]))
 }
 
-/// How badly a silhouette stands at a place: 1 less the mean over its points of how near an edge of their direction is, 0 to 1.
-pub(crate) fn misfit(maps: &[EdgeMaps], templates: &Templates, place: &Place) -> f64 {
-    1.0 - mean_score(maps, templates, place.rotation.to_rotation_matrix().matrix(), &place.centre, 1)
-}
-
+/// How well a silhouette stands in all views, by every `stride`th point.
 fn mean_score(
     maps: &[EdgeMaps],
     templates: &Templates,
@@ -288,25 +290,30 @@ fn mean_score(
     sum / maps.len().max(1) as f64
 }
 
-/// Places at which silhouettes lie on edges of their direction in all views, with their [`misfit`], in no order. `near` is where the views look; for one view
-/// alone the depth is sought where the body is as large as bodies are in pictures.
+/// Places at which silhouettes lie on edges of their direction in all views, apart from each other, with 1 less their mean score for a misfit. `near` is
+/// where the views look; for one view alone the depth is sought where the body is as large as bodies are in pictures, and each depth
+/// has its own best places: small silhouettes find edges more easily than large ones.
 pub(crate) fn vote(maps: &[EdgeMaps], templates: &Templates, near: Option<&Point3>) -> Vec<Place> {
-    let mut found: Vec<Place> = Vec::new();
-    for map in maps {
-        let mut hits = Vec::new();
-        match near {
-            Some(near) => scan(map, templates, (near - map.view.source()).norm(), &mut hits),
-            None => depths(map, templates).for_each(|away| scan(map, templates, away, &mut hits)),
+    let best = |map: &EdgeMaps, away: f64, most: usize| {
+        let mut hits = scan(map, templates, away);
+        hits.sort_by_key(|h| (std::cmp::Reverse(h.count), h.direction, h.turn));
+        hits.truncate(most);
+        hits.iter().filter_map(|hit| along_the_ray(maps, map, templates, hit)).collect::<Vec<Place>>()
+    };
+    match (near, maps) {
+        (Some(near), _) => {
+            let of = |map| best(map, (near - map.view.source()).norm(), HITS.0);
+            distinct(maps.iter().flat_map(of).collect(), APART, PLACES.0)
         }
-        let place = |h: &Hit| (std::cmp::Reverse(h.count), h.direction, h.turn);
-        hits.sort_by_key(place);
-        hits.truncate(HITS);
-        found.extend(hits.iter().filter_map(|hit| along_the_ray(maps, map, templates, hit)));
+        (None, [map]) => {
+            let of = |away| distinct(best(map, away, HITS.1), APART, PLACES.1);
+            depths(map, templates).flat_map(of).collect()
+        }
+        (None, _) => Vec::new(),
     }
-    found
 }
 
-/// Distances from the source at which the body's diameter is three quarters to an eighth of the picture.
+/// Distances from the source at which the body's diameter is from three quarters of the picture down to a sixth.
 fn depths(map: &EdgeMaps, templates: &Templates) -> impl Iterator<Item = f64> {
     let width = *map.view.size().iter().max().unwrap_or(&1) as f64 * map.view.mm_per_px(1.0);
     let nearest = 2.0 * templates.radius / (0.75 * width);
@@ -315,7 +322,7 @@ fn depths(map: &EdgeMaps, templates: &Templates) -> impl Iterator<Item = f64> {
 
 /// Depths that one view alone tries, and the ratio of one to the next.
 const DEPTHS: i32 = 14;
-const DEPTH_RATIO: f64 = 1.15;
+const DEPTH_RATIO: f64 = 1.12;
 /// Steps along a ray, part of the distance, and how many to either side: two views, one.
 const RAY_STEP: f64 = 0.006;
 const RAY_STEPS: (i32, i32) = (21, 12);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibration;
+mod compare;
 mod edits;
 mod messages;
 mod models;

@@ -7,7 +7,7 @@ use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::{Mesh, Point3, Pose, Vector3};
 use biplane_optimisation::{EdgeField, MatchParams, View, match_body, refine};
 use biplane_outline::{Outline, RimMesh, Sampling};
-use biplane_phantom::{Body, TrueFluoroscope, biplane, ideal_outline};
+use biplane_phantom::{Body, TrueFluoroscope, biplane};
 use biplane_silhouette::{Candidate, SilhouetteLibrary, descend};
 use nalgebra::{Quaternion, UnitQuaternion};
 use rand::{Rng, SeedableRng};
@@ -17,7 +17,8 @@ use rayon::prelude::*;
 use super::SectionError;
 use super::studies::{REAL, SIMULATED};
 use crate::goals::Goals;
-use crate::lab::{calibrations, ideal_params};
+use crate::lab::{calibrations, unbiased_params};
+use crate::many_outlines;
 use crate::outcome::outline_curves;
 use crate::{Cell, Column, Distribution, Lab, Row, Scene, SceneError, Section, Table, elsewhere};
 
@@ -121,18 +122,20 @@ fn table(id: &str, heading: &str) -> Table {
     Table { id: id.to_owned(), heading: heading.to_owned(), columns: columns(), rows: Vec::new() }
 }
 
-fn row(label: &str, all: &[Found], prepared_s: f64) -> Row {
+/// A row; where the reference is no better than one view's depth, `near` alone is told and not what is right.
+fn row(label: &str, all: &[Found], prepared_s: f64, near: bool) -> Row {
     let share = |of: &dyn Fn(&Found) -> bool| Cell::Share(all.iter().filter(|f| of(f)).count(), all.len());
     let times = |of: fn(&Found) -> f64| Distribution::of(all.iter().map(of).collect());
     let whole = times(|f| f.all_ms);
+    let wrong = all.iter().filter(|f| f.good && !f.right).count();
     Row::ours(
         label,
         vec![
-            share(&|f| f.right),
+            if near { Cell::text("-") } else { share(&|f| f.right) },
             share(&|f| f.place == Some(0)),
             share(&|f| f.place.is_some()),
             share(&|f| f.good),
-            Cell::Number(all.iter().filter(|f| f.good && !f.right).count() as f64),
+            if near { Cell::text("-") } else { Cell::Number(wrong as f64) },
             Cell::Number(times(|f| f.candidates_ms).median),
             Cell::Number(whole.median),
             Cell::Number(whole.p95),
@@ -156,7 +159,9 @@ fn random(
     outlines: &(dyn Fn(&Pose) -> Vec<Curves> + Sync),
 ) -> (Vec<Found>, f64) {
     let (library, prepared_s) = library(mesh);
-    let (rim, params) = (RimMesh::new(mesh), MatchParams::default());
+    // Candidates are near: edges need not be looked for as far as from starts that somebody guessed.
+    let params = MatchParams { search_px: MatchParams::default().search_px, ..unbiased_params() };
+    let rim = RimMesh::new(mesh);
     let calibrations = calibrations(views);
     let names: Vec<String> = calibrations.iter().map(|c| c.view.clone()).collect();
     let fluoroscopes: Vec<Fluoroscope> = calibrations.iter().map(Fluoroscope::from).collect();
@@ -223,6 +228,58 @@ fn real_tray(lab: &Lab, femur: Scene) -> Result<Scene, SceneError> {
     Ok(Scene { mesh, rim, params: femur.params, names: femur.names, frames })
 }
 
+/// The real sequence of one view: mesh, its poses as JointTrack wrote them, name of the row.
+const SINGLE: [(&str, &str, &str); 2] = [
+    ("KR_right_7_fem.stl", "fem.jts", "real femoral component, one view"),
+    ("KR_right_6_tib.stl", "tib.jts", "real tray, one view"),
+];
+/// Its folder, from the project's, and its frames.
+const SINGLE_FOLDER: &str = "../shared/data/real/knee-implant-single";
+const SINGLE_FRAMES: [&str; 3] = ["0160", "0170", "0180"];
+
+/// A body of the real sequence of one view. JointTrack's camera is at the origin and looks along -z, x to the right and y up; its poses are
+/// `Rz Rx Ry x + t`, a row `tx, ty, tz, z, x, y` a frame, mm and degrees.
+fn real_single(lab: &Lab, (mesh, poses, _): (&str, &str, &str)) -> Result<Scene, SceneError> {
+    let data = std::path::absolute(lab.root.join(SINGLE_FOLDER)).map_err(SceneError::Folder)?;
+    let folder = tempfile::tempdir().map_err(SceneError::Folder)?;
+    let file = |name: &str| folder.path().join(name);
+    let write = |name: &str, text: String| std::fs::write(file(name), text).map_err(SceneError::Folder);
+    // The middle of the picture, which lies half a pixel before (512, 512).
+    let (pixel, away) = (0.373, 1198.0);
+    write(
+        "calibration.json",
+        format!(
+            r#"{{"fluoroscopes": {{"A": {{"pixel_mm": {pixel}, "size": [1024, 1024], "source": [0, 0, 0],
+            "centre": [{0}, {0}, -{away}], "u": [1, 0, 0], "v": [0, -1, 0]}}}}}}"#,
+            -pixel / 2.0
+        ),
+    )?;
+    write(
+        "pipeline.toml",
+        format!(
+            "[study]\nname = \"kneel\"\n[fluoroscope.A]\ncalibration = \"calibration.json\"\n[[body]]\nname = \"body\"\nmesh = {:?}\n[[trial]]\nname = \"kneel\"\nframes \
+             = {{ A = {:?} }}\n",
+            data.join(mesh),
+            data.join("AT_K1_V1_*.tif"),
+        ),
+    )?;
+    let path = data.join(poses);
+    let bad = |row: usize| SceneError::Reference { path: path.clone(), row };
+    let text = std::fs::read_to_string(&path).map_err(|_| bad(0))?;
+    let mut reference = "frame".to_owned() + &",m".repeat(16) + "\n";
+    for (k, (frame, line)) in SINGLE_FRAMES.iter().zip(text.lines().skip(2)).enumerate() {
+        let v: Vec<f64> = line.split(',').filter_map(|v| v.trim().parse().ok()).collect();
+        let &[tx, ty, tz, z, x, y] = v.as_slice() else { return Err(bad(k + 3)) };
+        let about = |axis, deg: f64| UnitQuaternion::from_axis_angle(&axis, deg.to_radians());
+        let turn = about(Vector3::z_axis(), z) * about(Vector3::x_axis(), x) * about(Vector3::y_axis(), y);
+        let matrix = Pose::new(turn, Vector3::new(tx, ty, tz)).matrix();
+        let row: Vec<String> = matrix.transpose().iter().map(f64::to_string).collect();
+        reference += &format!("{frame},{}\n", row.join(","));
+    }
+    write("reference.csv", reference)?;
+    Scene::load(&file("pipeline.toml"), "body", &file("reference.csv"))
+}
+
 const BODIES: [(Body, &str); 4] = [
     (Body::FemoralComponent, "femoral component"),
     (Body::TibialTray, "tibial component"),
@@ -238,7 +295,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     let mut one = table("anywhere-one-view", "one view, ideal outlines");
     let mut goals = Goals::default();
     let mut add = |table: &mut Table, label: &str, (found, prepared_s): (Vec<Found>, f64), goal: bool| {
-        let added = row(label, &found, prepared_s);
+        let added = row(label, &found, prepared_s, false);
         if goal {
             let right = found.iter().filter(|f| f.right).count();
             goals.share(&format!("{label}, right"), (right, found.len()), 0.99);
@@ -253,7 +310,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         let outlines = |number: usize| {
             let views = views[..number].to_vec();
             move |pose: &Pose| {
-                views.iter().map(|v| Curves(ideal_outline(body.solid(), pose, v, STEP_PX))).collect()
+                views.iter().map(|v| Curves(many_outlines::outline(body, pose, v, STEP_PX))).collect()
             }
         };
         add(&mut ideal, name, random(lab, &mesh, &views, poses, &outlines(2)), true);
@@ -261,7 +318,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
     }
     for body in elsewhere::BODIES {
         // Outlines of the very mesh, drawn by this program at poses that no file has: they say how the search ends, and no more.
-        let scene = elsewhere::scene(&lab.root, body, 36_000, POINTS, &ideal_params())?;
+        let scene = elsewhere::scene(&lab.root, body, 36_000, POINTS, &unbiased_params())?;
         let fluoroscopes: Vec<Fluoroscope> = calibrations(&views).iter().map(Fluoroscope::from).collect();
         let outlines = |pose: &Pose| {
             let mut outline = Outline::new();
@@ -274,7 +331,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         let label = format!("{body} of `fixtures/scene`");
         add(&mut ideal, &label, random(lab, &scene.mesh, &views, poses, &outlines), true);
     }
-    let mut seen = table("anywhere-pictures", "pictures of everything, two views");
+    let mut seen = table("anywhere-pictures", "pictures of everything");
     for (name, pipeline, body, reference) in &SIMULATED[..lab.count(SIMULATED.len(), 2)] {
         let scene = Scene::load(&lab.root.join(pipeline), body, &lab.root.join(reference))?;
         add(&mut seen, name, pictures(&scene), false);
@@ -284,6 +341,12 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
         let scene = Scene::load(&lab.root.join(pipeline), body, &lab.root.join(reference))?;
         add(&mut seen, "real femoral component", pictures(&scene), false);
         add(&mut seen, "real tray", pictures(&real_tray(lab, scene)?), false);
+    }
+    if lab.root.join(SINGLE_FOLDER).is_dir() {
+        for single in SINGLE {
+            let (found, prepared_s) = pictures(&real_single(lab, single)?);
+            seen.rows.push(row(single.2, &found, prepared_s, true));
+        }
     }
     Ok(Some(Section {
         title: "Starts from no guess at all".to_owned(),
@@ -295,8 +358,9 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
              there is that the right basin is among the candidates."
                 .to_owned(),
             "Pictures: all edges of both bodies, bones and the intensifier's border, nothing chosen. For the real tray nobody published poses; \
-             its match from a person's rough poses stands for them (eleven frames). The real sequence is not part of this project; where it is missing \
-             its rows are left out."
+             its match from a person's rough poses stands for them (eleven frames). With one real view the reference's depth is no better than ours, \
+             so the right basin alone is told. Real sequences are not part of this project; where they are missing their rows are \
+             left out."
                 .to_owned(),
             goals.text(),
         ],

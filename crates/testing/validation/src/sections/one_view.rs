@@ -31,6 +31,8 @@ const SHORTEST_STEP_MM: f64 = 0.2;
 const ELSEWHERE: (f64, f64) = (1.0, 3.0);
 /// Goal for the length of the error in plane at 95 %, mm.
 const IN_PLANE_MM: f64 = 0.1;
+/// What counts as depth as good as geometry allows, of the bound.
+const OF_THE_BOUND: f64 = 1.5;
 const BODIES: [(Body, &str); 3] = [
     (Body::FemoralComponent, "femoral component"),
     (Body::TibialTray, "tibial component"),
@@ -201,6 +203,7 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                 false => name.to_owned(),
             };
             goals.at_most(&format!("{label}, in plane at 95 %"), p95, IN_PLANE_MM, "mm");
+            goals.at_most(&format!("{label}, depth"), errors[1] / least[1], OF_THE_BOUND, "of its bound");
             goals.none(&format!("{label}, elsewhere"), elsewhere.len());
             let mut cells: Vec<Cell> = errors
                 .iter()
@@ -227,7 +230,8 @@ pub fn measure(lab: &Lab) -> Result<Option<Section>, SectionError> {
                  verdict; elsewhere is beyond {} mm in plane or {} degrees. Edges of X-ray pictures lie inside a smooth \
                  outline; where that inset is solved for (`edge_bias = \"constant\"`), it is told from depth by perspective alone. Both it \
                  and `\"none\"` are measured. \
-                 Goals: {IN_PLANE_MM} mm in plane at 95 %; depth as good as geometry allows.",
+                 Goals: {IN_PLANE_MM} mm in plane at 95 %; depth as good as \
+                 geometry allows, which shall be {OF_THE_BOUND} of the bound.",
                 lab.seed, ELSEWHERE.0, ELSEWHERE.1
             ),
             goals.text(),
