@@ -112,7 +112,7 @@ pub enum CompareError {
     #[error("cannot start threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// A person stopped it.
-    #[error("stopped after {done} of {all} searches; nothing of a comparison is kept")]
+    #[error("stopped after {done} of {all} searches; a comparison is told when all are done")]
     Stopped {
         /// Searches that were finished.
         done: usize,

@@ -18,7 +18,8 @@ fn line(table: &str, objective: &str, optimiser: &str) -> Vec<String> {
     let mut lines = table.lines().map(cells);
     let found =
         lines.find(|c| c.len() > 3 && c[0] == objective && (optimiser.is_empty() || c[1] == optimiser));
-    found.unwrap_or_else(|| panic!("no line {objective} {optimiser} in\n{table}"))
+    assert!(found.is_some(), "no line {objective} {optimiser} in\n{table}");
+    found.unwrap()
 }
 
 #[test]
