@@ -199,6 +199,7 @@ mod tests {
                 depth: 1000.0,
                 normal: p.direction,
                 length_px: 1.0,
+                radius_mm: 20.0,
             })
             .collect()
     }
