@@ -11,7 +11,7 @@ use biplane_artifact::{Calibration, Curves, PixelOrigin, PoseRecord};
 use biplane_fluoroscope::{Distortion, Fluoroscope};
 use biplane_geometry::{Curve, EdgePoint, Mesh, Point2, Point3, Pose, Rigid, Twist, Vector2, Vector3};
 use biplane_optimisation::{Contrast, EdgeField, MatchParams, Refined, View, refine};
-use biplane_outline::{Outline, RimMesh, Sampling};
+use biplane_outline::{Outline, OutlinePoint, RimMesh, Sampling};
 use biplane_segmentation::{SegmentParams, find_edges};
 use nalgebra::{Matrix4, UnitQuaternion};
 
@@ -272,14 +272,19 @@ fn matched(
     for fluoroscope in fluoroscopes {
         outline.trace(&rim, truth, fluoroscope, Sampling { step_px: 1.0 });
         assert!(outline.length_px() > 200.0);
-        let points = outline.points().iter().enumerate().map(|(k, p)| EdgePoint {
+        // In order round the middle: these outlines are star-shaped about it.
+        let middle = fluoroscope.project(&truth.transform(rim.centroid())).unwrap().pixel;
+        let angle = |p: &OutlinePoint| (p.pixel.y - middle.y).atan2(p.pixel.x - middle.x);
+        let mut around = outline.points().to_vec();
+        around.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+        let points = around.iter().enumerate().map(|(k, p)| EdgePoint {
             position: p.pixel - p.normal * inside(k),
             // From dark to bright: outward.
             direction: p.normal,
             strength: 10.0,
             sigma_px: 0.1,
         });
-        let curves = Curves(vec![Curve { points: points.collect(), closed: false }]);
+        let curves = Curves(vec![Curve { points: points.collect(), closed: true }]);
         views.push(View { edges: EdgeField::new(&curves, None), fluoroscope: fluoroscope.clone() });
     }
     let params = MatchParams { search_px: 10.0, contrast, ..MatchParams::default() };
@@ -316,13 +321,15 @@ fn covariance_is_translation_then_rotation_along_laboratory_axes_at_the_centroid
         std::array::from_fn::<f64, 6, _>(|i| c[(i, i)].sqrt())
     };
     let mesh = spindle(Vector3::zeros());
-    let level = sigma(&mesh, &Pose::identity());
+    // Tilted, so that an outline tells of every turn.
+    let tilt = UnitQuaternion::from_euler_angles(0.5, 0.4, 0.0);
+    let level = sigma(&mesh, &Pose::new(tilt, Vector3::zeros()));
     // Seen along z, the depth is held least of the three translations; of the turns, that in the picture's plane best.
     assert!(level[2] > 3.0 * level[0].max(level[1]), "{level:?}");
     assert!(level[5] < 0.7 * level[3].min(level[4]), "{level:?}");
     // Turned so that its long axis is the laboratory's y: x and y change places, whatever the model's axes are called.
     let quarter = UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::FRAC_PI_2);
-    let upright = sigma(&mesh, &Pose::new(quarter, Vector3::zeros()));
+    let upright = sigma(&mesh, &Pose::new(quarter * tilt, Vector3::zeros()));
     for (a, b) in [(0, 1), (1, 0), (2, 2), (3, 4), (4, 3), (5, 5)] {
         assert!((level[a] / upright[b] - 1.0).abs() < 0.1, "{a} {b}: {level:?} {upright:?}");
     }
@@ -333,7 +340,7 @@ fn covariance_is_translation_then_rotation_along_laboratory_axes_at_the_centroid
     );
     // The same body with its model's origin 500 mm away: its centroid is where it was, and known as well.
     let shift = Vector3::new(0.0, 500.0, 0.0);
-    let far = sigma(&spindle(shift), &Pose::new(UnitQuaternion::identity(), -shift));
+    let far = sigma(&spindle(shift), &Pose::new(tilt, -(tilt * shift)));
     for i in 0..6 {
         assert!((level[i] / far[i] - 1.0).abs() < 0.02, "{i}: {level:?} {far:?}");
     }

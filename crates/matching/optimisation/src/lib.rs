@@ -25,6 +25,7 @@ mod bias;
 mod bingham;
 mod consistency;
 mod judge;
+mod noise;
 mod refine;
 mod search;
 mod stage;

@@ -19,6 +19,7 @@ use biplane_outline::{Outline, OutlinePoint, RimMesh, Sampling};
 use nalgebra::{Matrix6, Vector6};
 
 use crate::EdgeField;
+use crate::noise::covariance;
 
 /// One view of a body: its fluoroscope and the edges of its frame.
 #[derive(Debug)]
@@ -160,8 +161,6 @@ impl Row {
 struct Normal {
     matrix: Matrix6<f64>,
     vector: Vector6<f64>,
-    weight: f64,
-    squared: f64,
     /// Square of the robust weight's scale, px^2.
     scale_squared: f64,
 }
@@ -494,6 +493,12 @@ fn collect_view(
     evidence
 }
 
+/// Derivative by the residual of the residual times its [`robust_weight`]: negative for outliers, which give way.
+pub(crate) fn robust_slope(scale_squared: f64, residual: f64) -> f64 {
+    let squared = residual * residual;
+    scale_squared * scale_squared * (scale_squared - 3.0 * squared) / (scale_squared + squared).powi(3)
+}
+
 /// Geman and McClure's weight of a residual.
 pub(crate) fn robust_weight(scale_squared: f64, residual: f64) -> f64 {
     (scale_squared / (scale_squared + residual * residual)).powi(2)
@@ -514,13 +519,7 @@ pub(crate) fn robust_scale_squared(buffers: &mut Buffers, radius: f64, least: f6
 
 fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64, least_scale: f64) -> Normal {
     let scale_squared = robust_scale_squared(buffers, radius, least_scale);
-    let mut normal = Normal {
-        matrix: Matrix6::zeros(),
-        vector: Vector6::zeros(),
-        weight: 0.0,
-        squared: 0.0,
-        scale_squared,
-    };
+    let mut normal = Normal { matrix: Matrix6::zeros(), vector: Vector6::zeros(), scale_squared };
     for (rows, inset) in buffers.by_view() {
         // Sums over the view of weight, weight times residual, weight times derivative: its inset's row.
         let (mut sum, mut sum_residual, mut sum_derivative) = (0.0, 0.0, Vector6::zeros());
@@ -531,8 +530,6 @@ fn normal_equations(buffers: &mut Buffers, radius: f64, inset_px: f64, least_sca
             let weight = row.weight() * robust_weight(normal.scale_squared, left);
             normal.matrix.syger(weight, &row.derivative, &row.derivative, 1.0);
             normal.vector += row.derivative * (weight * row.residual);
-            normal.weight += weight;
-            normal.squared += weight * left * left;
             sum += weight;
             sum_residual += weight * row.residual;
             sum_derivative += row.derivative * weight;
@@ -585,38 +582,6 @@ fn finish(pose: Pose, steps: u32, still: bool, params: &RefineParams, buffers: &
             evidence.close_px += row.length * (-squared / 2.0).exp();
         }
     }
-    let covariance = covariance(&normal, buffers);
+    let covariance = covariance(&normal.matrix, normal.scale_squared, buffers);
     Refined { pose, evidence, steps, still, covariance }
-}
-
-/// Covariance of the pose from the residuals: a sandwich in which residuals within one correlation length are one
-/// observation. The inset's own uncertainty is in the normal matrix already.
-fn covariance(normal: &Normal, buffers: &Buffers) -> Option<Matrix6<f64>> {
-    // Six of the pose and one inset a view were fitted to the samples.
-    let (samples, fitted) = (buffers.rows.len() as f64, 6.0 + buffers.views.len() as f64);
-    if normal.weight <= 0.0 || samples <= fitted {
-        return None;
-    }
-    let variance = normal.squared / normal.weight * samples / (samples - fitted);
-    let mut spread = Matrix6::zeros();
-    for (rows, inset) in buffers.by_view() {
-        let (mut sum, mut mean) = (0.0, Vector6::zeros());
-        for row in rows {
-            let weight = row.length * robust_weight(normal.scale_squared, row.residual - inset);
-            mean += row.derivative * weight;
-            sum += weight;
-        }
-        if sum > 0.0 {
-            mean /= sum;
-        }
-        for row in rows {
-            let robust = robust_weight(normal.scale_squared, row.residual - inset);
-            let weight = row.length * row.mm_per_px.powi(4) * robust * robust * CORRELATION_PX;
-            let own = row.derivative - mean;
-            spread.syger(weight, &own, &own, 1.0);
-        }
-    }
-    spread.fill_upper_triangle_with_lower_triangle();
-    let inverse = normal.matrix.try_inverse()?;
-    Some(inverse * spread * inverse * variance).filter(|c| c.iter().all(|v| v.is_finite()))
 }

@@ -10,6 +10,15 @@ impl Goals {
         self.note(what, value <= goal, format!("{value:.4} {unit}, goal {goal} {unit}"));
     }
 
+    /// `value` should be between two.
+    pub fn between(&mut self, what: &str, value: f64, (low, high): (f64, f64), unit: &str) {
+        self.note(
+            what,
+            (low..=high).contains(&value),
+            format!("{value:.1} {unit}, goal {low} to {high} {unit}"),
+        );
+    }
+
     /// `share` of something should be at least `goal`.
     pub fn share(&mut self, what: &str, (part, whole): (usize, usize), goal: f64) {
         let share = part as f64 / whole.max(1) as f64;
