@@ -218,13 +218,14 @@ fn edges_are_carried_into_ideal_pixels_with_their_direction() {
 
 // Matching
 
-/// A spindle along x, 60 mm long and 30 and 16 mm thick, its centre at `centre` of its model's frame.
+/// A knotty spindle along x, 60 mm long and about 30 and 16 mm thick, its centre at `centre` of its model's frame.
 fn spindle(centre: Vector3) -> Mesh {
     let n = 48;
     let point = |i: usize, j: usize| {
         let polar = std::f64::consts::PI * i as f64 / n as f64;
         let around = std::f64::consts::TAU * (j % n) as f64 / n as f64;
-        let across = if i == 0 || i == n { 0.0 } else { polar.sin() };
+        // No ellipsoid, whose outline is an ellipse and does not tell of six motions.
+        let across = if i == 0 || i == n { 0.0 } else { polar.sin() * (1.0 + 0.3 * (3.0 * polar).cos()) };
         Point3::new(30.0 * polar.cos(), 15.0 * across * around.cos(), 8.0 * across * around.sin()) + centre
     };
     let quads = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
@@ -259,12 +260,12 @@ fn along_y() -> Fluoroscope {
     })
 }
 
-/// What a descent makes of the edges of a dark body, the `k`-th of them `inside(k)` px within its outline.
+/// What a descent makes of the edges of a dark body, `inside(x)` px within its outline at `x` from its centroid (model axes).
 fn matched(
     mesh: &Mesh,
     truth: &Pose,
     fluoroscopes: &[Fluoroscope],
-    inside: impl Fn(usize) -> f64,
+    inside: impl Fn(&Vector3) -> f64,
     contrast: Contrast,
 ) -> Refined {
     let (rim, mut outline) = (RimMesh::new(mesh), Outline::new());
@@ -277,8 +278,9 @@ fn matched(
         let angle = |p: &OutlinePoint| (p.pixel.y - middle.y).atan2(p.pixel.x - middle.x);
         let mut around = outline.points().to_vec();
         around.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
-        let points = around.iter().enumerate().map(|(k, p)| EdgePoint {
-            position: p.pixel - p.normal * inside(k),
+        let at = |p: &OutlinePoint| truth.inverse().transform(&p.world) - rim.centroid();
+        let points = around.iter().map(|p| EdgePoint {
+            position: p.pixel - p.normal * inside(&at(p)),
             // From dark to bright: outward.
             direction: p.normal,
             strength: 10.0,
@@ -316,13 +318,19 @@ fn a_dark_body_finds_edges_that_brighten_outward_alone() {
 fn covariance_is_translation_then_rotation_along_laboratory_axes_at_the_centroid() {
     // Edges are off by a wave along the outline, the same one each time: how it spreads over the six is the shape's doing.
     let sigma = |mesh: &Mesh, truth: &Pose| {
-        let refined = matched(mesh, truth, &[along_z()], |k| 0.2 * (1.3 * k as f64).sin(), Contrast::Dark);
+        let refined = matched(
+            mesh,
+            truth,
+            &[along_z()],
+            |x| 0.2 * (2.0 * x.dot(&Vector3::new(1.0, 2.0, 3.0))).sin(),
+            Contrast::Dark,
+        );
         let c = refined.covariance.unwrap();
         std::array::from_fn::<f64, 6, _>(|i| c[(i, i)].sqrt())
     };
     let mesh = spindle(Vector3::zeros());
     // Tilted, so that an outline tells of every turn.
-    let tilt = UnitQuaternion::from_euler_angles(0.5, 0.4, 0.0);
+    let tilt = UnitQuaternion::from_euler_angles(0.8, 0.15, 0.0);
     let level = sigma(&mesh, &Pose::new(tilt, Vector3::zeros()));
     // Seen along z, the depth is held least of the three translations; of the turns, that in the picture's plane best.
     assert!(level[2] > 3.0 * level[0].max(level[1]), "{level:?}");
