@@ -56,8 +56,9 @@ const FAR_SPACING_PX: f64 = 4.0;
 /// Far: steps for one tracing of the outline, and tracings at most.
 const FAR_STEPS: u32 = 3;
 const FAR_TRACES: u32 = 8;
-/// Far: factor of the search radius from tracing to tracing.
-const FAR_SHRINK: f64 = 0.6;
+/// Far: search radius over the median distance of pairs at the last step, or over this share of itself while steps are long.
+const FAR_REACH: f64 = 6.0;
+const FAR_MOVED: f64 = 0.1;
 /// Far: least cosine between an outline's normal and an edge's direction.
 const FAR_COSINE: f64 = 0.3;
 /// Far: edges that are longer than so many outlines are not the body's alone, and do not look for the outline in turn.
@@ -218,28 +219,28 @@ pub(crate) fn refine_with(
     params: &RefineParams,
     buffers: &mut Buffers,
 ) -> Refined {
-    let (pose, far_steps) = approach(mesh, views, start, params, buffers);
-    let (pose, steps, still) = settle(mesh, views, pose, params, buffers);
+    let (pose, far_steps, close) = approach(mesh, views, start, params, buffers);
+    let (pose, steps, still) = settle(mesh, views, pose, close, params, buffers);
     if !still {
         collect_anew(mesh, views, &pose, params, buffers);
     }
     finish(pose, far_steps + steps, still, params, buffers)
 }
 
-/// The far search; gives its pose and the steps taken.
+/// The far search; gives its pose, the steps taken, and whether it came to rest within the near search's reach.
 fn approach(
     mesh: &RimMesh,
     views: &[View],
     start: &Pose,
     params: &RefineParams,
     buffers: &mut Buffers,
-) -> (Pose, u32) {
+) -> (Pose, u32, bool) {
     let mut pose = *start;
     let mut radius = params.search_px;
     let mut steps = 0;
     let least = params.final_search_px * NEAR_FROM;
     if radius <= least {
-        return (pose, steps);
+        return (pose, steps, false);
     }
     let mut spacing = FAR_SPACING_PX;
     for _ in 0..FAR_TRACES {
@@ -252,12 +253,15 @@ fn approach(
             samples.extend_from_slice(buffers.outline.points());
         }
         spacing = (longest / FAR_SAMPLES).max(FAR_SPACING_PX);
-        let mut size = f64::INFINITY;
+        let (mut size, mut residual) = (f64::INFINITY, 0.0);
         for _ in 0..FAR_STEPS {
             let center = pose.transform(mesh.centroid());
             pair(views, &center, radius, params, buffers);
+            buffers.sizes.clear();
+            buffers.sizes.extend(buffers.rows.iter().map(|r| r.residual.abs()));
+            residual = median(&mut buffers.sizes);
             let normal = normal_equations(buffers, radius, 0.0, LEAST_FAR_SCALE_PX);
-            let Some(twist) = solve(&normal, mesh.radius_of_gyration()) else { return (pose, steps) };
+            let Some(twist) = solve(&normal, mesh.radius_of_gyration()) else { return (pose, steps, false) };
             steps += 1;
             pose = hold(&pose, &twist, &center, buffers);
             size = twist.translation.norm().max(twist.rotation.norm() * mesh.radius_of_gyration());
@@ -265,16 +269,15 @@ fn approach(
                 break;
             }
         }
-        let closest = radius <= least;
-        radius = (radius * FAR_SHRINK).max(least);
-        if size < FAR_STILL_MM {
-            if closest {
-                break;
-            }
-            radius = (radius * FAR_SHRINK).max(least);
+        let still = size < FAR_STILL_MM;
+        if still && radius <= least {
+            return (pose, steps, true);
         }
+        // As far as pairs are apart, and farther while they move.
+        let reach = FAR_REACH * residual.max(if still { 0.0 } else { FAR_MOVED * radius });
+        radius = radius.min(reach).max(least);
     }
-    (pose, steps)
+    (pose, steps, false)
 }
 
 /// Moves a pose, and with it the samples of the outline.
@@ -370,15 +373,16 @@ fn row(
     })
 }
 
-/// The near search; gives its pose, the steps taken and whether it came to rest.
+/// The near search, from a pose that is `close` or within its first radius; gives its pose, the steps taken and whether it came to rest.
 fn settle(
     mesh: &RimMesh,
     views: &[View],
     mut pose: Pose,
+    close: bool,
     params: &RefineParams,
     buffers: &mut Buffers,
 ) -> (Pose, u32, bool) {
-    let mut radius = params.final_search_px * NEAR_FROM;
+    let mut radius = params.final_search_px * if close { 1.0 } else { NEAR_FROM };
     let (mut steps, mut final_steps, mut still) = (0, 0, false);
     let mut held = false;
     while final_steps < params.most_steps && !still {

@@ -139,7 +139,7 @@ fn all_parameters_of_a_placement_together_bring_what_each_brings() {
     let scene = scene();
     // Large enough to stand out of what a match repeats to by itself, and weighed evenly, so that the answer is linear.
     let (source, detector) = (0.2, 0.2);
-    let even = RefineParams { least_scale_px: 10.0, ..MatchParams::default().search() };
+    let even = RefineParams { least_scale_px: 10.0, still_mm: 1e-6, ..MatchParams::default().search() };
     let uncertainty = CalibrationUncertainty::independent(&[[1000.0, source, detector]; 2]);
     let found = predicted(&scene, &uncertainty);
     let mut expected = Matrix6::zeros();
@@ -165,7 +165,7 @@ fn all_parameters_of_a_placement_together_bring_what_each_brings() {
         let error = (found[(i, j)] - expected[(i, j)]).abs();
         assert!(
             error < 0.05 * scale + own(i) * own(j),
-            "{i} {j}: {} predicted, {} matched",
+            "{i} {j}: {} predicted, {} matched, scale {scale}",
             found[(i, j)],
             expected[(i, j)]
         );
