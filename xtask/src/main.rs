@@ -35,7 +35,7 @@ enum Task {
         /// The form of a minute or two that CI runs: fewer frames; writes nothing.
         #[arg(long)]
         quick: bool,
-        /// Measure these sections alone; writes nothing.
+        /// Measure these sections alone; a full run of them takes their place in docs/validation.md.
         #[arg(long, value_delimiter = ',', value_name = "SECTION", value_parser = section_names())]
         only: Vec<String>,
         /// Seed of all that is drawn; limits are for seed 1, and another one writes nothing.
@@ -204,6 +204,9 @@ fn validate(quick: bool, only: &[String], seed: u64) -> Result<bool, Box<dyn Err
             None => beyond.push("README.md: the marks between which its table goes are gone".to_owned()),
         }
         println!("written: docs/validation.md, docs/validation/*.svg, the table of README.md");
+    }
+    if !quick && !only.is_empty() && seed == SEED {
+        biplane_validation::put(&root().join("docs"), &measured, &budgets)?;
     }
     for line in &beyond {
         println!("BEYOND ITS LIMIT: {line}");

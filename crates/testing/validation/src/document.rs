@@ -120,6 +120,31 @@ pub fn write(folder: &Path, head: &str, sections: &[Section], budgets: &Budgets)
     std::fs::write(folder.join("validation.md"), text)
 }
 
+/// Puts sections into the `validation.md` of `folder` in place of those of their titles, or after all where there is none, and writes
+/// their plots.
+///
+/// # Errors
+/// A file cannot be read or written.
+pub fn put(folder: &Path, sections: &[Section], budgets: &Budgets) -> std::io::Result<()> {
+    let path = folder.join("validation.md");
+    let document = std::fs::read_to_string(&path)?;
+    let mut parts: Vec<String> = document.split("\n## ").map(str::to_owned).collect();
+    for section in sections {
+        let markdown = section.markdown(budgets, PLOTS);
+        let own = markdown.trim_end().trim_start_matches("## ");
+        let own = format!("{own}\n");
+        let titled = |part: &&mut String| part.lines().next() == Some(section.title.as_str());
+        match parts.iter_mut().skip(1).find(titled) {
+            Some(part) => *part = own,
+            None => parts.push(own),
+        }
+        for plot in &section.plots {
+            std::fs::write(folder.join(PLOTS).join(&plot.file), &plot.content)?;
+        }
+    }
+    std::fs::write(path, parts.join("\n## "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,5 +186,21 @@ mod tests {
         assert!(!plots.join("old.svg").exists() && plots.join("notes.txt").exists());
         let text = std::fs::read_to_string(folder.path().join("validation.md")).unwrap();
         assert!(text.contains("## A title") && text.contains("](validation/new.svg)"));
+    }
+
+    #[test]
+    fn a_section_measured_alone_takes_the_place_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let section = |title: &str, text: &str| Section {
+            title: title.to_owned(),
+            text: vec![text.to_owned()],
+            tables: vec![],
+            plots: vec![],
+        };
+        let budgets = Budgets::built_in().unwrap();
+        write(folder.path(), "# Head\n", &[section("A", "one"), section("B", "two")], &budgets).unwrap();
+        put(folder.path(), &[section("A", "three"), section("C", "four")], &budgets).unwrap();
+        let text = std::fs::read_to_string(folder.path().join("validation.md")).unwrap();
+        assert_eq!(text, "# Head\n\n## A\n\nthree\n\n## B\n\ntwo\n\n## C\n\nfour\n");
     }
 }

@@ -27,7 +27,7 @@ mod table;
 pub mod thesis;
 mod true_outline;
 
-pub use document::{Plot, Section, readme, write};
+pub use document::{Plot, Section, put, readme, write};
 pub use lab::{Effort, Lab};
 pub use relative::{noise, seen_from};
 pub use scene::{Claim, Made, Origin, Posed, Scene, SceneError, read_body, read_reference};
