@@ -1,14 +1,15 @@
 //! From edge curves and a start pose to the pose of a body, how well it fits, and how sure it is.
 //!
-//! **Objective.** Each point of the model's visible outline looks for the nearest edge point that runs in the same
-//! direction and has the body's contrast, within a search radius that shrinks as the match goes on; its residual is the
-//! distance along the outline's normal, weighed robustly (Geman and McClure). Model to image, as the thesis's Eqs. 3.4 to
-//! 3.6, but with direction, contrast and robust weights, so that a part of the outline that the image does not show does
-//! not pull the pose away.
+//! **Objective.** Far from the pose, some samples of the visible outline and some points of the edges look for each other, in place
+//! and direction; near it, each sample's residual is where its normal crosses the nearest curve of its direction and contrast. Weighed
+//! robustly (Geman and McClure), so that a part of the outline that the image does not show, or an edge of something else, does not pull
+//! the pose away. (The thesis's Eqs. 3.4 to 3.6 run from model to image alone, without direction.)
 //!
 //! **Optimiser.** Levenberg-Marquardt on the rotation group: the pose moves by a twist about the body's centroid, and a
 //! rim point held fixed to the body has the same normal speed as the contour, so each residual's derivative is one exact
 //! row of six.
+//!
+//! **Uncertainty.** From the residuals and their correlation along the contour, which is measured, and from the calibration's.
 //!
 //! **Starts.** The start given; where its match does not come out good, further ones around it, drawn from a seed. Where none of them
 //! leads to a good pose, or none is given, those of a library of the body's silhouettes, each; of two poses that fit alike neither is
@@ -43,4 +44,5 @@ pub use refine::{Evidence, RefineParams, Refined, View, assess, refine};
 pub use search::{Ended, SearchParams, Single, lowest};
 pub use stage::{
     Contrast, EdgeBias, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_anywhere, match_body,
+    prepared_rim,
 };

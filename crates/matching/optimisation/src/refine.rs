@@ -130,10 +130,9 @@ impl Refined {
     }
 }
 
-/// Length along a contour over which residuals move together, px: they are differences between mesh and body, and edges
-/// beside bone or cement that are off as a whole, not noise of single pixels. Two residuals nearer than this say the same
-/// thing twice. 150 px gives a mean squared error over the stated covariance of 6.8 (femoral component) and 3.8 (tray) on
-/// the simulated knee, where 6 would be right (`cargo xtask validate --only simulated`).
+/// Length along a contour over which residuals are taken to move together where it is not measured, px: differences between mesh and
+/// body, and edges beside bone or cement that are off as a whole. What is known of an inset beforehand counts as much as residuals along
+/// it, and the disagreement of two views is stated with it. The pose's covariance measures it ([`crate::noise`]).
 pub(crate) const CORRELATION_PX: f64 = 150.0;
 
 /// One outline sample that found an edge.

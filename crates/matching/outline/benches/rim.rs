@@ -1,5 +1,5 @@
-//! How long the rim takes: `cargo bench -p biplane-outline`. A ball of 15,000 points seen from 1 m, and loops over the same arrays that
-//! do nothing but read them.
+//! How long an outline takes: `cargo bench -p biplane-outline`. Balls of three sizes of mesh in two views, beside the floor: a plain loop
+//! over all faces and edges that says which edges are on the rim, and nothing else.
 
 use std::time::Instant;
 
@@ -36,19 +36,54 @@ fn ball(n: usize) -> Option<Mesh> {
     Mesh::from_soup(&soup).ok()
 }
 
+/// What the rim of all triangles costs at least: which faces look at the source, and the edges between those that do and do not.
+struct Floor {
+    planes: [Vec<f64>; 4],
+    sides: Vec<[u32; 2]>,
+    facing: Vec<bool>,
+}
+
+impl Floor {
+    fn of(mesh: &Mesh) -> Self {
+        let mut planes = [const { Vec::new() }; 4];
+        for t in 0..mesh.triangles().len() {
+            let n = mesh.area_vector(t);
+            let row = [n.x, n.y, n.z, n.dot(&mesh.corners(t)[0].coords)];
+            planes.iter_mut().zip(row).for_each(|(list, v)| list.push(v));
+        }
+        let edges = biplane_surface::Edges::of(mesh);
+        let sides = edges.iter().filter(|(_, h)| h.len() == 2).map(|(_, h)| [h[0] / 3, h[1] / 3]).collect();
+        Self { planes, sides, facing: Vec::new() }
+    }
+
+    fn rim(&mut self, source: &Point3) -> usize {
+        let [x, y, z, d] = &self.planes;
+        self.facing.clear();
+        self.facing.extend(
+            x.iter()
+                .zip(y)
+                .zip(z)
+                .zip(d)
+                .map(|(((x, y), z), d)| x * source.x + y * source.y + z * source.z > *d),
+        );
+        self.sides.iter().filter(|s| self.facing[s[0] as usize] != self.facing[s[1] as usize]).count()
+    }
+}
+
 fn main() {
-    let Some(mesh) = ball(87) else { return };
-    println!("{} points, {} triangles", mesh.vertices().len(), mesh.triangles().len());
-    let view = Fluoroscope::from(&Calibration {
-        view: "A".to_owned(),
-        size: [1000, 1000],
-        source: [0.0, 0.0, -1000.0],
-        matrix: [[4000.0, 0.0, 500.0], [0.0, 4000.0, 500.0], [0.0, 0.0, 1.0]],
-        distortion: None,
-    });
-    println!("{:9.1} us  adjacency and planes", 1e6 * least(20, || RimMesh::new(&mesh)));
-    let rim = RimMesh::new(&mesh);
-    let mut outline = Outline::new();
+    let view = |source: [f64; 3], matrix: [[f64; 3]; 3]| {
+        Fluoroscope::from(&Calibration {
+            view: "A".to_owned(),
+            size: [1000, 1000],
+            source,
+            matrix,
+            distortion: None,
+        })
+    };
+    let views = [
+        view([0.0, 0.0, -1000.0], [[4000.0, 0.0, 500.0], [0.0, 4000.0, 500.0], [0.0, 0.0, 1.0]]),
+        view([-1000.0, 0.0, 0.0], [[500.0, 4000.0, 0.0], [500.0, 0.0, 4000.0], [1.0, 0.0, 0.0]]),
+    ];
     let poses: Vec<Pose> = (0..50)
         .map(|k| {
             let turn =
@@ -57,36 +92,44 @@ fn main() {
         })
         .collect();
     let per = 1e6 / poses.len() as f64;
-    let time = per
-        * least(40, || {
-            let mut points = 0;
-            for pose in &poses {
-                outline.trace(&rim, pose, &view, Sampling { step_px: 1000.0 });
-                points += outline.points().len();
-            }
-            points
-        });
-    // What must be read at least: four numbers a face, two faces an edge.
-    let planes: Vec<f64> = (0..mesh.triangles().len() * 4).map(|k| k as f64).collect();
-    let sides: Vec<u32> = (0..mesh.triangles().len() as u32 * 3).collect();
-    let streamed = per
-        * least(40, || {
-            poses
-                .iter()
-                .map(|_| {
-                    let planes = std::hint::black_box(&planes);
-                    let sides = std::hint::black_box(&sides);
-                    let faces: f64 = planes
-                        .as_chunks::<4>()
-                        .0
-                        .iter()
-                        .fold([0.0; 4], |s, p| [0, 1, 2, 3].map(|k| s[k] + p[k]))[0];
-                    faces + f64::from(sides.iter().fold(0_u32, |s, v| s ^ v))
+    println!("us a pose, both views; times the floor");
+    for rings in [42, 87, 134] {
+        let Some(mesh) = ball(rings) else { return };
+        let prepared = 1e3 * least(5, || RimMesh::new(&mesh));
+        let mut floor = Floor::of(&mesh);
+        let floor = per
+            * least(40, || {
+                let sources = |pose: &Pose| views.each_ref().map(|v| pose.inverse().transform(v.source()));
+                poses.iter().flat_map(sources).map(|s| floor.rim(&s)).sum::<usize>()
+            });
+        println!(
+            "{} points: floor {floor:.1}; a mesh is prepared in {prepared:.1} ms",
+            mesh.vertices().len()
+        );
+        for (name, rim) in [("flat", RimMesh::flat(&mesh)), ("curved", RimMesh::new(&mesh))] {
+            let mut outline = Outline::lean();
+            let mut time = |spacing: f64| {
+                per * least(40, || {
+                    let mut sum = 0.0;
+                    for (pose, view) in poses.iter().flat_map(|p| views.iter().map(move |v| (p, v))) {
+                        outline.trace_thinned(&rim, pose, view, Sampling { step_px: 1000.0 }, spacing);
+                        // The row of each point: its normal speed by the six of the pose.
+                        for point in outline.points() {
+                            if let Some((_, by_point)) = view.project_with_derivative(&point.world) {
+                                let gradient = by_point.transpose() * point.normal;
+                                sum += gradient.x + point.world.coords.cross(&gradient).x;
+                            }
+                        }
+                    }
+                    sum
                 })
-                .sum::<f64>()
-        });
-    println!(
-        "{time:9.1} us  outline; {streamed:.1} us a loop that reads the faces and edges, {:.1} times as long",
-        time / streamed
-    );
+            };
+            let (alone, whole) = (time(f64::INFINITY), time(0.0));
+            println!(
+                "    {name}: rim {alone:.1} ({:.1}), visible outline with its derivative {whole:.1} ({:.1})",
+                alone / floor,
+                whole / floor
+            );
+        }
+    }
 }
