@@ -13,7 +13,9 @@ use std::time::Instant;
 use biplane_artifact::{ContentHash, Curves};
 use biplane_geometry::{Point3, Pose, PoseError};
 use biplane_objective::{DistanceField, Kind};
-use biplane_optimisation::{Ended, MatchInputs, MatchParams, Method, SearchParams, Single, lowest};
+use biplane_optimisation::{
+    Ended, MatchInputs, MatchParams, Method, SearchParams, Single, lowest, prepared_rim,
+};
 use biplane_optimiser::Optimiser;
 use biplane_outline::RimMesh;
 use biplane_stage::{Context, Store, StoreError, Stored};
@@ -388,7 +390,8 @@ fn scene<'a>(
         });
     }
     let inputs = steps.match_inputs(job, place, &curves)?;
-    let rim = context.prepared(inputs.model.hash(), || RimMesh::new(&inputs.model.0));
+    let params = steps.prepared.study.matching_of(job.bodies[place].0);
+    let rim = prepared_rim(&inputs, &params, context);
     let near = inputs.start.first().map(|start| start.0).or(known);
     let near = near.ok_or("no start pose, and no reference to start around")?;
     let starts = search.starts(&near, rim.centroid());

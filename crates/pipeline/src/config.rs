@@ -262,6 +262,9 @@ pub struct BodySection {
     /// surface from slices gets 15,000 points spread evenly.
     #[schemars(with = "Option<ModelParams>")]
     pub model: Option<toml::Spanned<ModelParams>>,
+    /// Whether flat ends, where a volume or a scan was cut, are outline: `"ignore"` where pictures show the bone beyond its model,
+    /// `"keep"` where the body truly ends so. Not given, they are ignored on surfaces from slices, and kept in mesh files.
+    pub cut_ends: Option<CutEnds>,
     /// Its local coordinate system: what it is and of which side, `axes = { body = "femur", side = "left" }`.
     #[schemars(with = "Option<AxesParams>")]
     pub axes: Option<toml::Spanned<AxesParams>>,
@@ -274,6 +277,16 @@ pub struct BodySection {
     pub reference: Option<Located>,
     /// Unit of the reference's coordinates.
     pub reference_units: Option<Units>,
+}
+
+/// What flat ends of a body's surface are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CutEnds {
+    /// Where its volume was cut: no outline.
+    Ignore,
+    /// Its own: outline as the rest.
+    Keep,
 }
 
 /// Unit of length of a mesh file.

@@ -6,12 +6,13 @@
 //! epipolar planes; it shifts or scales everything alike.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use biplane_artifact::{Calibration, Circle, ContentHash, Match, Verdict};
 use biplane_fluoroscope::Fluoroscope;
-use biplane_geometry::Pose;
+use biplane_geometry::{Mesh, Pose};
 use biplane_optimisation::{Disagreement, EdgeField, View, disagreement};
-use biplane_outline::RimMesh;
+use biplane_outline::{RimMesh, RimWithoutCutEnds};
 use biplane_spots::find_border;
 use biplane_stage::{Context, Hashed, Store, StoreError, Stored};
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ use crate::logging::Progress;
 use crate::models::{self, BodyModel};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{Standing, Steps, read_stored};
-use crate::study::Study;
+use crate::study::{Body, Study};
 use crate::summary::aligned;
 use crate::walk::Way;
 
@@ -89,11 +90,19 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
         let known: Vec<&str> = study.trials.iter().map(|t| t.name.as_str()).collect();
         return Err(DoctorError::Trial { wanted: name.to_owned(), known: known.join(", ") });
     }
-    let rim = |model: &Option<BodyModel>| {
-        model.as_ref().map(|m| m.load().map(|mesh| RimMesh::new(&mesh.0))).transpose()
+    let rim = |(model, body): (&Option<BodyModel>, &Body)| {
+        let of = |mesh: &Mesh| match body.ignore_cut_ends {
+            true => RimWithoutCutEnds::new(mesh).0,
+            false => Arc::new(RimMesh::new(mesh)),
+        };
+        model.as_ref().map(|m| m.load().map(|mesh| of(&mesh.0))).transpose()
     };
-    let meshes: Vec<Option<RimMesh>> =
-        models.iter().map(rim).collect::<Result<_, _>>().map_err(|e| InputErrors(vec![e]))?;
+    let meshes: Vec<Option<Arc<RimMesh>>> = models
+        .iter()
+        .zip(&study.bodies)
+        .map(rim)
+        .collect::<Result<_, _>>()
+        .map_err(|e| InputErrors(vec![e]))?;
     let mut found = Diagnosis { text: String::new(), well: true };
     for trial in wanted {
         let looked = Looking { steps: &steps, calibrated: &calibrated, meshes: &meshes, trial };
@@ -115,7 +124,7 @@ struct Looking<'a> {
     steps: &'a Steps<'a>,
     calibrated: &'a Calibrated,
     /// None of a body whose model is not there: it has no match either.
-    meshes: &'a [Option<RimMesh>],
+    meshes: &'a [Option<Arc<RimMesh>>],
     trial: usize,
 }
 

@@ -241,8 +241,8 @@ fn write(
     let mut bodies = Vec::new();
     for (place, matched) in made.matches.iter().enumerate() {
         let inputs = steps.contour_inputs(job, slot, place, automatic, matched).map_err(item)?;
-        let found =
-            ContourOf::run(&inputs, &study.contour, steps.context).map_err(|e| item(e.to_string()))?;
+        let found = ContourOf::run(&inputs, &study.contour_of(job.bodies[place].0), steps.context)
+            .map_err(|e| item(e.to_string()))?;
         let mut flags = found.flags;
         if matched.verdict != Verdict::Good {
             flags.push(format!("the match is {}: {}", matched.verdict.word(), matched.reason));

@@ -3,13 +3,16 @@
 //! Outlines are drawn where the picture shows them: through the distortion of a picture that is not corrected. Each body
 //! has a colour by its place ([`COLOURS`]); a body whose match failed is drawn in gaps.
 
+use std::sync::Arc;
+
 use biplane_artifact::{Calibration, Frame, Match, ModelMesh, Picture, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Point2;
-use biplane_outline::{Outline, RimMesh, Sampling};
+use biplane_outline::{Outline, RimMesh, RimWithoutCutEnds, Sampling};
 use biplane_stage::{Context, Stage, inputs};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
+use serde::{Deserialize, Serialize};
 
 inputs! {
     /// One picture and the bodies matched in it.
@@ -23,6 +26,13 @@ inputs! {
         /// Their matches, in the same order.
         matches: [Match],
     }
+}
+
+/// What of the bodies is drawn.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct OverlayParams {
+    /// Places of the bodies whose cut ends are no outline.
+    pub without_cut_ends: Vec<usize>,
 }
 
 /// Colours of the bodies by their place (red, green, blue), over again for more; told apart by colour-blind people too.
@@ -59,11 +69,15 @@ impl Stage for Overlay {
     const NAME: &'static str = "overlay";
     const CODE: &'static str = env!("BIPLANE_CODE_HASH");
     type Inputs = OverlayInputs;
-    type Params = ();
+    type Params = OverlayParams;
     type Output = Picture;
     type Error = OverlayError;
 
-    fn run(inputs: &OverlayInputs, (): &(), context: &Context) -> Result<Picture, OverlayError> {
+    fn run(
+        inputs: &OverlayInputs,
+        params: &OverlayParams,
+        context: &Context,
+    ) -> Result<Picture, OverlayError> {
         let (models, matches) = (inputs.models.len(), inputs.matches.len());
         if models != matches {
             return Err(OverlayError::Bodies { models, matches });
@@ -75,7 +89,11 @@ impl Stage for Overlay {
         let view = Fluoroscope::from(&*inputs.calibration);
         let mut outline = Outline::new();
         for (place, (model, found)) in inputs.models.iter().zip(&inputs.matches).enumerate() {
-            let mesh = context.prepared(model.hash(), || RimMesh::new(&model.0));
+            let mesh = if params.without_cut_ends.contains(&place) {
+                Arc::clone(&context.prepared(model.hash(), || RimWithoutCutEnds::new(&model.0)).0)
+            } else {
+                context.prepared(model.hash(), || RimMesh::new(&model.0))
+            };
             outline.trace(&mesh, &found.pose.into(), &view, Sampling { step_px: 0.5 });
             let recorded = |p: &Point2| view.distortion().map_or(Some(*p), |d| d.recorded(p));
             let drawn = |p: &Point2| {

@@ -86,12 +86,10 @@ pub struct Prepared {
     pub segment: ParamsText,
     /// Parameters of the step `edit`.
     pub edit: ParamsText,
-    /// Parameters of the step `match`.
-    pub matching: ParamsText,
-    /// Parameters of the step `contour`.
-    pub contour: ParamsText,
-    /// Parameters of the step `overlay`: none.
-    pub overlay: ParamsText,
+    /// Parameters of the step `match`, one a body of the study.
+    pub matching: Vec<ParamsText>,
+    /// Parameters of the step `contour`, one a body of the study.
+    pub contour: Vec<ParamsText>,
     pictures: Pictures,
 }
 
@@ -307,15 +305,15 @@ impl Prepared {
         );
         let segment = faults.keep(ParamsText::of(&study.segment));
         let edit = faults.keep(ParamsText::of(&study.edit));
-        let matching = faults.keep(ParamsText::of(&study.matching));
-        let contour = faults.keep(ParamsText::of(&study.contour));
-        let overlay = faults.keep(ParamsText::of(&()));
+        let bodies = || 0..study.bodies.len();
+        let matching =
+            bodies().map(|body| ParamsText::of(&study.matching_of(body))).collect::<Result<_, _>>();
+        let contour = bodies().map(|body| ParamsText::of(&study.contour_of(body))).collect::<Result<_, _>>();
+        let (matching, contour) = (faults.keep(matching), faults.keep(contour));
         let warnings: Vec<String> = warnings.iter().map(|w| study.shorten(w)).collect();
-        let parameters = segment.zip(edit).zip(matching).zip(contour).zip(overlay);
+        let parameters = segment.zip(edit).zip(matching).zip(contour);
         match (equipment, parameters, faults.list) {
-            (Some(equipment), Some(((((segment, edit), matching), contour), overlay)), list)
-                if list.is_empty() =>
-            {
+            (Some(equipment), Some((((segment, edit), matching), contour)), list) if list.is_empty() => {
                 Ok(Self {
                     study,
                     index,
@@ -332,7 +330,6 @@ impl Prepared {
                     edit,
                     matching,
                     contour,
-                    overlay,
                     pictures,
                 })
             }

@@ -450,6 +450,7 @@ mod tests {
                 name: "femur".into(),
                 surface: SurfaceSource::File(MeshSource { path: "m".into(), units: None }),
                 model: None,
+                ignore_cut_ends: false,
                 axes: None,
                 landmarks: None,
                 reference: None,

@@ -590,6 +590,7 @@ fn provenance(prepared: &Prepared) -> Provenance {
         };
         parameters.extend(of_surface.map(|p| (format!("{step} {name}"), text(p))));
         parameters.extend(body.model.as_ref().map(|m| (format!("{MODEL} {name}"), text(toml::to_string(m)))));
+        parameters.push((format!("{MATCH} {name}"), format!("ignore_cut_ends = {}\n", body.ignore_cut_ends)));
         parameters.extend(body.axes.as_ref().map(|a| (format!("{AXES} {name}"), text(toml::to_string(a)))));
     }
     parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));

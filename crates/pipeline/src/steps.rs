@@ -12,14 +12,14 @@ use biplane_contour::{ContourInputs, ContourOf};
 use biplane_optimisation::{MatchBody, MatchInputs};
 use biplane_segmentation::{Segment, SegmentInputs, Trace, TraceInputs};
 use biplane_stage::{
-    Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, Promise, Promised, Stage, Store,
-    StoreError, Stored,
+    Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, ParamsText, Promise, Promised, Stage,
+    Store, StoreError, Stored,
 };
 
 use crate::calibrate::Calibrated;
 use crate::edits::{self, Drawn};
 use crate::models::BodyModel;
-use crate::overlay::{Overlay, OverlayInputs};
+use crate::overlay::{Overlay, OverlayInputs, OverlayParams};
 use crate::prepare::{Job, Prepared};
 use crate::sources::FrameFacts;
 use crate::study::ViewSource;
@@ -348,7 +348,14 @@ impl Steps<'_> {
         let item = self.item_of_body(job, slot, place);
         let done = self
             .store
-            .execute::<ContourOf, _>(CONTOUR, &item, &self.prepared.contour, &promised, load, self.context)
+            .execute::<ContourOf, _>(
+                CONTOUR,
+                &item,
+                &self.prepared.contour[job.bodies[place].0],
+                &promised,
+                load,
+                self.context,
+            )
             .map_err(|e| self.failed(job, None, e))?;
         Ok((read_stored(self.store, &done.output).map_err(ItemError::Failed)?, done.how))
     }
@@ -366,7 +373,7 @@ impl Steps<'_> {
         matched: Promise<Match>,
     ) -> Explained<Contour> {
         let promised = self.contour_promised(job, slot, place, curves, matched)?;
-        let parts = KeyParts::of::<ContourOf>(&self.prepared.contour, &promised);
+        let parts = KeyParts::of::<ContourOf>(&self.prepared.contour[job.bodies[place].0], &promised);
         self.explain::<ContourOf>(CONTOUR, &self.item_of_body(job, slot, place), &parts)
     }
 
@@ -435,9 +442,23 @@ impl Steps<'_> {
         let item = self.item(job, &self.prepared.study.bodies[*body].name);
         let done = self
             .store
-            .execute::<MatchBody, _>(MATCH, &item, &self.prepared.matching, &promised, load, self.context)
+            .execute::<MatchBody, _>(
+                MATCH,
+                &item,
+                &self.prepared.matching[*body],
+                &promised,
+                load,
+                self.context,
+            )
             .map_err(|e| self.failed(job, None, e))?;
         Ok((read_stored(self.store, &done.output).map_err(ItemError::Failed)?, done.how))
+    }
+
+    fn overlay_params(&self, job: &Job) -> Result<ParamsText, ItemError> {
+        let bodies = &self.prepared.study.bodies;
+        let without_cut_ends =
+            (0..job.bodies.len()).filter(|place| bodies[job.bodies[*place].0].ignore_cut_ends).collect();
+        ParamsText::of(&OverlayParams { without_cut_ends }).map_err(ItemError::of)
     }
 
     fn overlay_promised(
@@ -478,7 +499,7 @@ impl Steps<'_> {
             .execute::<Overlay, _>(
                 OVERLAY,
                 &self.item(job, name),
-                &self.prepared.overlay,
+                &self.overlay_params(job)?,
                 &promised,
                 load,
                 self.context,
@@ -498,7 +519,7 @@ impl Steps<'_> {
         matches: &[Promise<Match>],
     ) -> Result<Explanation, ItemError> {
         let promised = self.overlay_promised(job, slot, &self.picture(job, slot)?, matches)?;
-        let parts = KeyParts::of::<Overlay>(&self.prepared.overlay, &promised);
+        let parts = KeyParts::of::<Overlay>(&self.overlay_params(job)?, &promised);
         self.explain::<Overlay>(OVERLAY, &self.item(job, self.view(job, slot).1), &parts).map(|(why, _)| why)
     }
 
@@ -542,7 +563,7 @@ impl Steps<'_> {
     /// The store cannot be read.
     pub fn explain_match(&self, job: &Job, place: usize, curves: &[Stored<Curves>]) -> Explained<Match> {
         let promised = self.match_promised(job, place, curves)?;
-        let parts = KeyParts::of::<MatchBody>(&self.prepared.matching, &promised);
+        let parts = KeyParts::of::<MatchBody>(&self.prepared.matching[job.bodies[place].0], &promised);
         let item = self.item(job, &self.prepared.study.bodies[job.bodies[place].0].name);
         self.explain::<MatchBody>(MATCH, &item, &parts)
     }

@@ -20,8 +20,8 @@ use biplane_slices::SlicesParams;
 use biplane_spots::{Look, SpotError, SpotSettings};
 
 use crate::config::{
-    BeadsSection, BodySection, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore, Origin,
-    PairBy, PipelineFile, PlateSection, SlicesSection, StatedUncertainty, TrialSection, Units,
+    BeadsSection, BodySection, CutEnds, DoctorSection, FluoroscopeSection, Grid, InOrder, Located, OneOrMore,
+    Origin, PairBy, PipelineFile, PlateSection, SlicesSection, StatedUncertainty, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
 use crate::models::LANDMARKS;
@@ -154,6 +154,8 @@ pub struct Body {
     pub surface: SurfaceSource,
     /// How its points are spread; `None` where the vertices of its mesh are matched as they are.
     pub model: Option<ModelParams>,
+    /// Whether its flat ends, where its volume was cut, are no outline.
+    pub ignore_cut_ends: bool,
     /// What it is, for its local coordinate system, if one is wanted.
     pub axes: Option<AxesParams>,
     /// A person's landmarks; those in `edits/` win.
@@ -255,6 +257,18 @@ impl Study {
         self.matching.anywhere && self.matching.method == Method::Rim
     }
 
+    /// How a body is matched.
+    pub fn matching_of(&self, body: usize) -> MatchParams {
+        let ignore_cut_ends = self.bodies.get(body).is_some_and(|b| b.ignore_cut_ends);
+        MatchParams { ignore_cut_ends, ..self.matching.clone() }
+    }
+
+    /// How the contour of a body is chosen.
+    pub fn contour_of(&self, body: usize) -> ContourParams {
+        let ignore_cut_ends = self.bodies.get(body).is_some_and(|b| b.ignore_cut_ends);
+        ContourParams { ignore_cut_ends, ..self.contour.clone() }
+    }
+
     /// Where a person's own work is read from; a run never writes there.
     pub fn edits(&self) -> PathBuf {
         self.root.join("edits")
@@ -337,6 +351,14 @@ impl Study {
                 MatchError::Views { .. } | MatchError::NoStart | MatchError::Cancelled => None,
             };
             check.list.push(parameter(&text, "match", key, &error.to_string()));
+        }
+        for (table, said) in
+            [("match", file.matching.ignore_cut_ends), ("contour", file.contour.ignore_cut_ends)]
+        {
+            if said {
+                let what = "each body says for itself whether its cut ends are outline: [[body]] cut_ends = \"ignore\"";
+                check.list.push(parameter(&text, table, Some("ignore_cut_ends"), what));
+            }
         }
         if let Err(error) = file.spots.check() {
             let key = match &error {
@@ -729,6 +751,7 @@ impl Check {
             loft,
             label_surface,
             model,
+            cut_ends,
             axes,
             landmarks,
             reference,
@@ -779,6 +802,10 @@ impl Check {
             model: model
                 .or_else(|| surface.bone().map(|_| ModelParams { points: POINTS, ..ModelParams::default() })),
             name: name.into_inner(),
+            ignore_cut_ends: match cut_ends {
+                Some(said) => said == CutEnds::Ignore,
+                None => surface.bone().is_some(),
+            },
             surface,
             axes,
             landmarks: landmarks.map(|l| self.file(&l, "file of landmarks")),

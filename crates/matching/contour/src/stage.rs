@@ -1,9 +1,11 @@
 //! Inputs, parameters and errors of the stage `contour`.
 
+use std::sync::Arc;
+
 use biplane_artifact::{Calibration, Contour, Curves, Match, ModelMesh};
 use biplane_edge_field::EdgeField;
 use biplane_fluoroscope::Fluoroscope;
-use biplane_outline::{Outline, RimMesh, Sampling};
+use biplane_outline::{Outline, RimMesh, RimWithoutCutEnds, Sampling};
 use biplane_stage::{Context, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -59,6 +61,10 @@ pub struct ContourParams {
     /// and where more than this share of the outline has edges of two curves that cannot be told apart, 0 to 1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub flag_unclear_share: f64,
+    /// Whether the body's flat ends, where its volume was cut, are no outline. Each body's own: `[[body]]` says it.
+    #[schemars(skip)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub ignore_cut_ends: bool,
 }
 
 impl Default for ContourParams {
@@ -71,6 +77,7 @@ impl Default for ContourParams {
             contrast: Contrast::Dark,
             flag_found_share: 0.75,
             flag_unclear_share: 0.1,
+            ignore_cut_ends: false,
         }
     }
 }
@@ -102,6 +109,7 @@ impl ContourParams {
             contrast: _,
             flag_found_share,
             flag_unclear_share,
+            ignore_cut_ends: _,
         } = *self;
         let within = |name, value: f64, low: f64, high: f64, expected| {
             if (low..=high).contains(&value) {
@@ -140,7 +148,12 @@ impl Stage for ContourOf {
     ) -> Result<Contour, ContourError> {
         params.check()?;
         let view = Fluoroscope::from(&*inputs.calibration);
-        let mesh = context.prepared(inputs.model.hash(), || RimMesh::new(&inputs.model.0));
+        let (model, hash) = (&inputs.model.0, inputs.model.hash());
+        let mesh = if params.ignore_cut_ends {
+            Arc::clone(&context.prepared(hash, || RimWithoutCutEnds::new(model)).0)
+        } else {
+            context.prepared(hash, || RimMesh::new(model))
+        };
         let mut outline = Outline::new();
         outline.trace(&mesh, &inputs.matched.pose.into(), &view, Sampling { step_px: STEP_PX });
         let edges = EdgeField::new(&inputs.curves, view.distortion());

@@ -1,10 +1,12 @@
 //! The stage `match`: the curves of a frame's views, their calibrations, a body's mesh and a start in; its pose out.
 
+use std::sync::Arc;
+
 use biplane_artifact::{Calibration, CalibrationUncertainty, Curves, Match, ModelMesh, Start, Verdict};
 use biplane_fluoroscope::Fluoroscope;
 use biplane_geometry::Pose;
 use biplane_objective::{Body, DistanceField, Kind};
-use biplane_outline::RimMesh;
+use biplane_outline::{RimMesh, RimWithoutCutEnds};
 use biplane_silhouette::SilhouetteLibrary;
 use biplane_stage::{Context, Hashed, Stage, inputs};
 use schemars::JsonSchema;
@@ -150,6 +152,10 @@ pub struct MatchParams {
     pub bingham2006: BinghamParams,
     /// Settings of a search by any objective and optimiser.
     pub search: SearchParams,
+    /// Whether the body's flat ends, where its volume was cut, are no outline. Each body's own: `[[body]]` says it.
+    #[schemars(skip)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub ignore_cut_ends: bool,
 }
 
 impl Default for MatchParams {
@@ -177,6 +183,7 @@ impl Default for MatchParams {
             good_sigma_deg: 0.75,
             bingham2006: BinghamParams::default(),
             search: SearchParams::default(),
+            ignore_cut_ends: false,
         }
     }
 }
@@ -253,6 +260,7 @@ impl MatchParams {
             good_sigma_deg,
             bingham2006,
             search,
+            ignore_cut_ends: _,
         } = *self;
         let within = |name, value: f64, low: f64, high: f64, expected| {
             if (low..=high).contains(&value) {
@@ -417,6 +425,16 @@ pub fn match_anywhere(
     })
 }
 
+/// The body's rim, as the parameters want it.
+pub fn prepared_rim(inputs: &MatchInputs, params: &MatchParams, context: &Context) -> Arc<RimMesh> {
+    let (model, hash) = (&inputs.model.0, inputs.model.hash());
+    if params.ignore_cut_ends {
+        Arc::clone(&context.prepared(hash, || RimWithoutCutEnds::new(model)).0)
+    } else {
+        context.prepared(hash, || RimMesh::new(model))
+    }
+}
+
 /// Fluoroscope and edges of each view.
 pub(crate) fn views(inputs: &MatchInputs) -> Vec<View> {
     let of = |(curves, calibration): (&Hashed<Curves>, &Hashed<Calibration>)| {
@@ -444,7 +462,7 @@ impl Stage for MatchBody {
         if curves != calibrations || curves == 0 {
             return Err(MatchError::Views { curves, calibrations });
         }
-        let mesh = context.prepared(inputs.model.hash(), || RimMesh::new(&inputs.model.0));
+        let mesh = prepared_rim(inputs, params, context);
         let views = views(inputs);
         let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
         let start = inputs.start.first().map(|start| &start.0);

@@ -9,6 +9,8 @@
 //! point is on the outline where the pixel just beside it is under no face at all. Crossings are counted along image
 //! rows in bins, so the whole outline costs little more than the rim. Holes of the shadow have outlines too.
 //!
+//! **Cut ends.** Where a volume was cut, a bone's model ends and the bone does not: [`RimWithoutCutEnds`] has no outline there.
+//!
 //! **Grid outline.** [`GridOutline`] is the thesis's own outline of a cloud of points; it knows no triangles.
 //!
 //! **Guaranteed:** [`Outline`] is that of the union of the projected triangles, exactly, up to the sampling along edges
@@ -21,5 +23,5 @@ mod tree;
 mod visible;
 
 pub use grid::GridOutline;
-pub use rim::RimMesh;
+pub use rim::{RimMesh, RimWithoutCutEnds};
 pub use visible::{Outline, OutlinePoint, Sampling};

@@ -10,9 +10,10 @@
 //! **Flat** ([`RimMesh::flat`]): every edge is a crease and every wedge its face: the exact rim of the triangles as they are.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use biplane_geometry::{Mesh, Point3, Vector3};
-use biplane_surface::{Edges, Surface};
+use biplane_surface::{Edges, Surface, cut_ends};
 
 use crate::tree::{Item, Tree};
 
@@ -251,6 +252,19 @@ impl RimMesh {
     /// Root mean square distance of the surface from its centroid, mm.
     pub fn radius_of_gyration(&self) -> f64 {
         self.radius_of_gyration
+    }
+}
+
+/// A mesh as [`RimMesh::new`] takes it, but where the flat ends at which its volume was cut ([`cut_ends`]) are no outline: a type of its
+/// own, so that one mesh can be kept prepared both ways.
+#[derive(Debug, Clone)]
+pub struct RimWithoutCutEnds(pub Arc<RimMesh>);
+
+impl RimWithoutCutEnds {
+    /// Looks for the cut ends of `mesh`, and prepares it.
+    pub fn new(mesh: &Mesh) -> Self {
+        let cut = cut_ends(mesh);
+        Self(Arc::new(RimMesh::without(mesh, |face| cut.get(face).copied().unwrap_or(false))))
     }
 }
 

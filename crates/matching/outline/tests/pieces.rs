@@ -7,7 +7,7 @@ mod scene;
 use std::f64::consts::{PI, TAU};
 
 use biplane_geometry::{Mesh, Point2, Point3, Pose, Vector3};
-use biplane_outline::{Outline, RimMesh};
+use biplane_outline::{Outline, RimMesh, RimWithoutCutEnds};
 use nalgebra::UnitQuaternion;
 
 use scene::{ellipsoid, torus, traced, view};
@@ -198,4 +198,53 @@ fn filled(mesh: &Mesh, pose: &Pose) -> f64 {
         }));
     }
     f64::from(count) / 16.0
+}
+
+/// A shaft along z from 0 to `length` mm, its radius 14 mm and less towards its other end, closed by a round end below and a flat one above.
+fn shaft(length: f64) -> Mesh {
+    let (sectors, rings) = (96, 40);
+    let at = |i: i32, j: i32| {
+        let turn = TAU * f64::from(j % sectors) / f64::from(sectors);
+        let s = f64::from(i) / f64::from(rings);
+        // Half of it the round end, its height 14 mm.
+        let (radius, z) = if s < 0.5 {
+            (14.0 * (PI * s).sin(), -14.0 * (PI * s).cos())
+        } else {
+            let t = 2.0 * s - 1.0;
+            (14.0 - 4.0 * t + 2.5 * t * t, length * t)
+        };
+        Point3::new(radius * turn.cos(), radius * turn.sin(), z)
+    };
+    let mut soup = Vec::new();
+    for j in 0..sectors {
+        for i in 0..rings {
+            soup.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+            soup.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+        }
+        soup.push([at(rings, j), at(rings, j + 1), Point3::new(0.0, 0.0, length)]);
+    }
+    Mesh::from_soup(&soup).unwrap()
+}
+
+#[test]
+fn the_end_at_which_a_shaft_was_cut_has_no_outline_and_the_rest_keeps_its_own() {
+    let length = 60.0;
+    let mesh = shaft(length);
+    let (whole, cut) = (RimMesh::new(&mesh), RimWithoutCutEnds::new(&mesh).0);
+    // The shaft lies across the ray, and then leans so that its end shows as an ellipse.
+    for lean in [PI / 2.0, 1.2, 1.9] {
+        let pose = Pose::new(UnitQuaternion::from_euler_angles(0.0, lean, 0.0), ahead(1000.0).translation());
+        let height = |p: &biplane_outline::OutlinePoint| pose.inverse().transform(&p.world).z;
+        let [kept, left] = [&whole, &cut].map(|rim| traced(rim, &pose, 0.5));
+        let at_end = |outline: &Outline| {
+            let points = outline.points().iter().chain(outline.inner());
+            points.filter(|p| (height(p) - length).abs() < 1e-6).map(|p| p.length_px).sum::<f64>()
+        };
+        assert!(at_end(&kept) > 50.0 && at_end(&left) == 0.0, "{lean}: {} {}", at_end(&kept), at_end(&left));
+        let elsewhere = |outline: &Outline| {
+            outline.points().iter().filter(|p| (height(p) - length).abs() > 1e-6).copied().collect::<Vec<_>>()
+        };
+        assert!(elsewhere(&kept) == elsewhere(&left), "{lean}");
+        assert!(left.length_px() > 300.0);
+    }
 }

@@ -18,13 +18,15 @@ use scene::{random_pose, real, stl, traced, view, workspace};
 const DIRECTIONS: u32 = 8;
 /// Distance of the lines, px.
 const APART: f64 = 0.5;
+/// Where a shadow is so thin or ragged that this is too coarse, both outlines are looked at that many times as finely.
+const FINER: f64 = 5.0;
 /// A part of the rim is outline or not as a whole, and this long at most, px: what is half covered is the error of area and length.
 const STEP_PX: f64 = 0.02;
 /// Stretches nearer than this are one: triangles that share an edge meet up to rounding, px.
 const ROUNDING: f64 = 1e-7;
 
 /// Area (px^2) and length (px) of the outline of what the triangles cover.
-fn scanned(mesh: &Mesh, pose: &Pose, random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
+fn scanned(mesh: &Mesh, pose: &Pose, apart: f64, random: &mut Xoshiro256PlusPlus) -> (f64, f64) {
     let view = view();
     let pixels: Vec<Point2> =
         mesh.vertices().iter().map(|v| view.project(&pose.transform(v)).unwrap().pixel).collect();
@@ -36,11 +38,11 @@ fn scanned(mesh: &Mesh, pose: &Pose, random: &mut Xoshiro256PlusPlus) -> (f64, f
         let turned: Vec<Point2> =
             pixels.iter().map(|p| Point2::new(cos * p.x + sin * p.y, cos * p.y - sin * p.x)).collect();
         let low =
-            turned.iter().fold(f64::INFINITY, |l, p| l.min(p.y)) - APART * random.random_range(0.0..1.0);
+            turned.iter().fold(f64::INFINITY, |l, p| l.min(p.y)) - apart * random.random_range(0.0..1.0);
         let mut stretches: Vec<Vec<[f64; 2]>> = Vec::new();
         for t in mesh.triangles() {
             let corners = t.map(|v| turned[v as usize]);
-            let rows = corners.map(|p| (p.y - low) / APART);
+            let rows = corners.map(|p| (p.y - low) / apart);
             let from = rows.iter().fold(f64::INFINITY, |a, b| a.min(*b)).ceil() as usize;
             let to = rows.iter().fold(0.0_f64, |a, b| a.max(*b)).floor() as usize;
             for row in from..=to {
@@ -72,40 +74,56 @@ fn scanned(mesh: &Mesh, pose: &Pose, random: &mut Xoshiro256PlusPlus) -> (f64, f
                     ends += 2;
                     reached = *left;
                 }
-                area += (*right - reached).max(0.0) * APART;
+                area += (*right - reached).max(0.0) * apart;
                 reached = reached.max(*right);
             }
         }
     }
     let per = f64::from(DIRECTIONS);
-    (area / per, ends as f64 * APART * std::f64::consts::PI / (2.0 * per))
+    (area / per, ends as f64 * apart * std::f64::consts::PI / (2.0 * per))
 }
 
-/// The worst of so many poses: relative errors of area and of length.
-fn worst(mesh: &Mesh, poses: usize, seed: u64) -> (f64, f64) {
-    let rim = RimMesh::flat(mesh);
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let (mut of_area, mut of_length) = (0.0_f64, 0.0_f64);
-    for _ in 0..poses {
-        let pose = random_pose(&mut random, &mesh.area_centroid());
-        let outline = traced(&rim, &pose, STEP_PX);
-        let middle = view().project(&pose.transform(rim.centroid())).unwrap().pixel;
-        let area: f64 =
-            outline.points().iter().map(|p| p.normal.dot(&(p.pixel - middle)) * p.length_px / 2.0).sum();
-        let (scanned_area, length) = scanned(mesh, &pose, &mut random);
-        of_area = of_area.max((area / scanned_area - 1.0).abs());
-        of_length = of_length.max((outline.length_px() / length - 1.0).abs());
-    }
-    (of_area, of_length)
+/// Relative errors of the outline's area and length at a pose.
+fn errors(
+    mesh: &Mesh,
+    rim: &RimMesh,
+    pose: &Pose,
+    finer: f64,
+    random: &mut Xoshiro256PlusPlus,
+) -> (f64, f64) {
+    let outline = traced(rim, pose, STEP_PX / finer);
+    let middle = view().project(&pose.transform(rim.centroid())).unwrap().pixel;
+    let area: f64 =
+        outline.points().iter().map(|p| p.normal.dot(&(p.pixel - middle)) * p.length_px / 2.0).sum();
+    let (scanned_area, length) = scanned(mesh, pose, APART / finer, random);
+    ((area / scanned_area - 1.0).abs(), (outline.length_px() / length - 1.0).abs())
 }
 
 /// Greatest errors that are allowed, of area and of length: what sampling and scanning leave.
 const RIGHT: (f64, f64) = (1e-3, 1e-2);
 
+fn right(errors: (f64, f64)) -> bool {
+    errors.0 < RIGHT.0 && errors.1 < RIGHT.1
+}
+
 fn check(name: &str, mesh: &Mesh, poses: usize) {
-    let (area, length) = worst(mesh, poses, 7);
-    println!("{name}: {poses} poses, area within {area:.2e}, length within {length:.2e}");
-    assert!(area < RIGHT.0 && length < RIGHT.1, "{name}: {area:.2e}, {length:.2e}");
+    let rim = RimMesh::flat(mesh);
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
+    let (mut worst, mut again) = ((0.0_f64, 0.0_f64), 0);
+    for _ in 0..poses {
+        let pose = random_pose(&mut random, &mesh.area_centroid());
+        let mut found = errors(mesh, &rim, &pose, 1.0, &mut random);
+        if !right(found) {
+            again += 1;
+            found = errors(mesh, &rim, &pose, FINER, &mut random);
+        }
+        assert!(right(found), "{name}: {:.2e}, {:.2e} at {pose:?}", found.0, found.1);
+        worst = (worst.0.max(found.0), worst.1.max(found.1));
+    }
+    println!(
+        "{name}: {poses} poses, {again} looked at finely; area within {:.2e}, length within {:.2e}",
+        worst.0, worst.1
+    );
 }
 
 #[test]

@@ -47,6 +47,11 @@ fn faults_of_the_file_point_at_their_place() {
         "",
         &["pipeline.toml:11:8", "does not say where its surface comes from", "a mesh file"],
     );
+    refuses(
+        "search_px = 20.0",
+        "search_px = 20.0\nignore_cut_ends = true",
+        &["pipeline.toml:22:", "each body says for itself", "[[body]] cut_ends"],
+    );
     refuses("\"starts.csv\"", "\"start.csv\"", &["pipeline.toml:18:10", "did you mean `starts.csv`?"]);
     refuses("\"frames/A\"", "\"frame/A\"", &["pipeline.toml:16:16", "`frame` is not there either"]);
     refuses("\"frames/A\"", "\"frames/A/*.tif\"", &["pipeline.toml:16:16", "no file matches this pattern"]);

@@ -30,7 +30,9 @@ fn labels() -> Vec<u8> {
     bytes
 }
 
-const FROM_SLICES: &str = "slices = \"box\"\nmodel = { points = 3000 }\naxes = { body = \"other\" }";
+// A box ends in flat faces, and pictures show them.
+const FROM_SLICES: &str =
+    "slices = \"box\"\nmodel = { points = 3000 }\naxes = { body = \"other\" }\ncut_ends = \"keep\"";
 
 /// The scene with its box from a map of labels, and axes.
 fn scene() -> Scene {
@@ -101,6 +103,10 @@ fn slices_become_a_model_that_is_matched_and_a_second_run_does_nothing() {
     assert_eq!(code, 0, "{out}{err}");
     assert!(out.contains("slice_edits 1 run, 0 cached; loft 1 run, 0 cached; model 1 run"), "{out}");
     assert!(out.contains("segment 0 run, 6 cached; match 3 run"), "{out}");
+    // Where nothing is said, flat ends of a surface from slices are those at which its volume was cut.
+    scene.edit("\ncut_ends = \"keep\"", "");
+    let (_, why, _) = scene.biplane(&["explain", "match/*/0001"]);
+    assert!(why.contains("parameter ignore_cut_ends"), "{why}");
 }
 
 #[test]
@@ -206,7 +212,7 @@ fn faults_of_a_body_are_shown_at_their_lines() {
             ":14:",
         ),
         ("axes = { body = \"other\" }", "label_surface = { label = 5 }", "not found by this label", ":14:"),
-        ("name = \"squat\"", "name = \"landmarks\"", "a trial cannot be called `landmarks`", ":17:"),
+        ("name = \"squat\"", "name = \"landmarks\"", "a trial cannot be called `landmarks`", ":18:"),
     ];
     for (from, to, expected, place) in faults {
         let text = scene.read("pipeline.toml");

@@ -160,6 +160,17 @@ fn an_edit_wins_over_a_start_and_runs_only_its_frame() {
 }
 
 #[test]
+fn flat_ends_of_a_mesh_file_are_kept_where_nothing_is_said_and_ignoring_them_is_another_match() {
+    let scene = Scene::new();
+    assert_eq!(scene.biplane(&["run"]).0, 0);
+    scene.edit("mesh = \"box.stl\"", "mesh = \"box.stl\"\ncut_ends = \"keep\"");
+    assert_eq!(scene.biplane(&["explain"]).1, "nothing would run: 22 items are cached\n");
+    scene.edit("cut_ends = \"keep\"", "cut_ends = \"ignore\"");
+    let (_, why, _) = scene.biplane(&["explain", "match/*/0001"]);
+    assert!(why.contains("parameter ignore_cut_ends"), "{why}");
+}
+
+#[test]
 fn a_changed_parameter_is_explained_and_a_comment_is_none() {
     let scene = Scene::new();
     assert_eq!(scene.biplane(&["run"]).0, 0);
