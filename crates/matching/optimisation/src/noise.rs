@@ -9,6 +9,8 @@
 //! it can explain: over a contour of length `C` that they have `p` parameters for, products are smaller by `s^2 2 p L / C` at every distance
 //! short beside `C`. That is in the model, so that noise which varies slowly, and is mostly fitted away, is not taken for small.
 //!
+//! The variance of so few independent residuals is not sure: the covariance is that of Student's distribution.
+//!
 //! **Guaranteed:** measured coverage, in `cargo xtask validate --only coverage`. **Not in it:** errors of the calibration and of the mesh.
 
 use nalgebra::{Matrix6, Vector6};
@@ -84,7 +86,11 @@ pub(crate) fn covariance(
     // A slope near zero says that most residuals are outliers: such a pose is not sure of anything.
     let slope = (slopes / weights).max(0.05);
     let inverse = (normal * slope).try_inverse()?;
-    Some(inverse * middle * inverse * variance).filter(|c| c.iter().all(|v| v.is_finite()))
+    // The variance is itself known from so many independent residuals: errors over it are Student's, whose variance is larger.
+    let contour: f64 = all.iter().map(|s| s.contour_px).sum();
+    let freedom = (contour / (2.0 * length)).min(rows_in_all as f64) - fitted;
+    let student = if freedom > 4.0 { freedom / (freedom - 2.0) } else { 2.0 };
+    Some(inverse * middle * inverse * (variance * student)).filter(|c| c.iter().all(|v| v.is_finite()))
 }
 
 /// Variance of the noise, px^2, and its correlation length, px.
