@@ -45,7 +45,7 @@ pub struct RefineParams {
     pub still_mm: f64,
     /// Steps at most with the last search radius.
     pub most_steps: u32,
-    /// Residuals of about this size are never taken for outliers, px. Differences between mesh and body ([`LEAST_SCALE_PX`]), or
+    /// Residuals of about this size are never taken for outliers, px. Differences between mesh and body, or
     /// what a calibration that is not sure makes of them.
     pub least_scale_px: f64,
 }
