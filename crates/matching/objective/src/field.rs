@@ -24,7 +24,7 @@ pub struct DistanceField {
 }
 
 impl DistanceField {
-    /// From a mesh, with [`CELLS`] along its longest side.
+    /// From a mesh, with 72 cells along its longest side.
     pub fn new(mesh: &Mesh) -> Self {
         Self::with_cells(mesh, CELLS)
     }
