@@ -13,7 +13,7 @@ use biplane_geometry::{Point2, Pose, Twist, Vector3};
 use biplane_outline::{Outline, RimMesh, Sampling};
 use nalgebra::Vector6;
 
-use crate::refine::{Evidence, RefineParams, Refined, View};
+use crate::refine::{Evidence, MIN_COSINE, RefineParams, Refined, View};
 
 /// What is known of the edges of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,15 +32,13 @@ const BLUR_SIGMA_PX: f64 = 0.5;
 /// Standard deviation of what a view's edges lie inside beside what is predicted, px.
 const INSET_SIGMA_PX: f64 = 0.25;
 /// Length along a contour over which residuals still move together once the bias is out of them, px. It gives a mean squared error over the
-/// stated covariance of 4.5 (femoral component), 3.9 (tray) and 1.2 to 4.1 (bones) on the simulated knees, where 6 would be right
-/// (`cargo xtask validate --only simulated --quick`).
-const CORRELATION_PX: f64 = 40.0;
+/// stated covariance of 4.2 (femoral component), 4.0 (tray) and 1.2 to 3.3 (bones) on the simulated knees, where 6 would be right
+/// (`cargo xtask validate --only simulated`).
+const UNBIASED_CORRELATION_PX: f64 = 40.0;
 /// Rounds at most; the second one moves the body by some micrometres.
 const ROUNDS: usize = 4;
 /// Distance of samples, px: noise of edges is shared over as much.
 const SPACING_PX: f64 = 4.0;
-/// Least cosine between the outline's normal and an edge's direction, as at the end of a descent.
-const MIN_COSINE: f64 = 0.906;
 /// Edges that lie on the outline to this, as a root mean square or in the median, px, have no bias worth a search.
 const ON_OUTLINE_PX: f64 = 0.05;
 /// Share of the samples that must have chords.
@@ -70,7 +68,7 @@ pub fn take_out(
         blur_px: params.blur_px,
         blur_sigma_px: BLUR_SIGMA_PX,
         inset_sigma_px: INSET_SIGMA_PX,
-        correlation_px: CORRELATION_PX,
+        correlation_px: UNBIASED_CORRELATION_PX,
         motion_sigma: Vector6::new(MOVED_MM, MOVED_MM, MOVED_MM, turned, turned, turned),
     };
     let mut estimate = Estimate::of(&prior, views.len());

@@ -11,7 +11,8 @@
 //!
 //! The variance of so few independent residuals is not sure: the covariance is that of Student's distribution.
 //!
-//! **Guaranteed:** measured coverage, in `cargo xtask validate --only coverage`. **Not in it:** errors of the calibration and of the mesh.
+//! How often truths lie inside what is stated is measured, not guaranteed: `cargo xtask validate --only coverage`, with the goals that are
+//! missed. **Not in it:** errors of the calibration, and what a mesh leaves out of its body beyond what residuals show.
 
 use nalgebra::{Matrix6, Vector6};
 
@@ -150,7 +151,7 @@ fn correlation(all: &[Series], fitted: f64) -> Option<(f64, f64)> {
 /// `sum_ij l_i l_j g_i g_j' exp(-d_ij / L)` of one view: some rows stand for all, each for the stretch of contour to its neighbours.
 fn spread(series: &Series, length: f64) -> Matrix6<f64> {
     let step = series.value.len().div_ceil(PAIR_ROWS).max(1);
-    // Groups of rows that follow each other need not lie together, so each is kept as it is and its weight raised.
+    // Rows that follow each other need not be neighbours on the contour: each stands as it is, its weight raised for those passed over.
     let chosen: Vec<usize> = (0..series.value.len()).step_by(step).collect();
     if chosen.is_empty() {
         return Matrix6::zeros();

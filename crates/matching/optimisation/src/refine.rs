@@ -2,15 +2,14 @@
 //!
 //! **Far.** A few samples of the outline and a few points of the edges look for each other, a turn counting as a distance; each pair
 //! gives the distance from a point to the other's tangent. The same samples serve for several steps, held fixed to the body.
-//! **Near.** The outline is traced anew for every step, and each sample's residual is where its normal crosses the nearest curve of its
-//! direction.
+//! **Near.** The outline is traced anew until steps are short, and each sample's residual is where its normal crosses the nearest curve
+//! of its direction.
 //!
 //! Each view has one nuisance parameter beside the six of the pose: its **inset**, by which the image's edges lie inside
 //! the outline as a whole. At the rim of a smooth body the path of a ray starts from zero, so the steepest gradient lies
-//! inside the true outline, and smoothing adds to it: 0.37 to 0.60 px on the example study (`A_inset_px` and `B_inset_px`
-//! in its `results/poses.csv`). Left in the residuals, that bias turned the femoral component by 0.22 degrees in the median;
-//! with the inset solved for it is 0.07 (`cargo xtask validate --only simulated`, with and without `inset_px = 0.0` under `[match]` in
-//! `pipeline.toml`). The inset is eliminated from the normal equations, so a step stays 6 x 6.
+//! inside the true outline, and smoothing adds to it. Held at zero, the inset costs an X-rayed distal femur 0.16 mm and 0.62 degrees in the
+//! median; solved for, 0.008 and 0.019; what differs from rim to rim is taken out afterwards ([`crate::take_out`]), 0.001 and 0.003
+//! (`cargo xtask validate --only bias`). The inset is eliminated from the normal equations, so a step stays 6 x 6.
 
 use biplane_edge_field::{Sparse, SparseEdges};
 use biplane_fluoroscope::Fluoroscope;
@@ -69,7 +68,7 @@ const FAR_STILL_MM: f64 = 0.3;
 const SHRINK: f64 = 0.5;
 const NEAR_FROM: f64 = 3.0;
 /// Near: least cosine between the outline's normal and an edge's direction, 25 degrees.
-const MIN_COSINE: f64 = 0.906;
+pub(crate) const MIN_COSINE: f64 = 0.906;
 /// Near: distance of outline samples, px.
 const SPACING_PX: f64 = 2.0;
 /// Near: the same while the radius is not the last.
@@ -173,7 +172,7 @@ pub(crate) struct Buffers {
     views: Vec<(usize, f64)>,
     sizes: Vec<f64>,
     evidence: Vec<Evidence>,
-    /// Far: samples of each view and the normals that their edges should have.
+    /// Samples of the outline in each view; they move with the pose until it is traced anew.
     samples: Vec<Vec<OutlinePoint>>,
     sparse: SparseEdges,
 }

@@ -1,7 +1,7 @@
-//! The outline of a mesh seen from an X-ray source: its exact rim, and the part of it that bounds the shadow.
+//! The outline of a mesh seen from an X-ray source: its rim, and the part of it that bounds the shadow.
 //!
-//! **Rim.** An edge of the mesh is on the rim where the faces that look at the source and those that look away meet, or
-//! where the surface ends. Projected, the rim is the apparent contour.
+//! **Rim.** Where what looks at the source and what looks away meet, or the surface ends: on the curved surface that the triangles are a sample
+//! of ([`RimMesh::new`]), or on the triangles as they are ([`RimMesh::flat`]). Projected, the rim is the apparent contour.
 //!
 //! **Outline.** Orient each rim edge as the boundary of the front faces: the winding number of the projected rim about a
 //! pixel is then the number of front faces over that pixel (the boundary of a sum of triangles, each counted once, so
@@ -13,9 +13,10 @@
 //!
 //! **Grid outline.** [`GridOutline`] is the thesis's own outline of a cloud of points; it knows no triangles.
 //!
-//! **Guaranteed:** [`Outline`] is that of the union of the projected triangles, exactly, up to the sampling along edges
-//! ([`Sampling::step_px`]); nothing is allocated per evaluation once the buffers have grown. **Not guaranteed:** that
-//! the triangles are the body. They lie inside a convex surface by up to `edge^2 / 8 R`.
+//! **Guaranteed:** the outline of a [`RimMesh::flat`] is that of the union of the projected triangles, exactly, up to the sampling along edges
+//! ([`Sampling::step_px`]); nothing is allocated per evaluation once the buffers have grown. **Not guaranteed:** that a mesh is the body.
+//! Triangles lie inside a convex surface by up to `edge^2 / 8 R`, which the curved rim takes out but for a higher order; where its lifted
+//! points do not close to a twentieth of a pixel, it may show pinholes within the shadow.
 
 mod grid;
 mod rim;

@@ -52,7 +52,7 @@ pub(crate) struct Wedge {
 pub(crate) struct Triangle {
     /// Its wedges' slots in the tree.
     pub slots: [u32; 3],
-    /// Its sides, from each corner to the next: the number of an edge that is none, or [`Triangle::CREASE`] and of a crease.
+    /// Its sides, from each corner to the next: the number of a smooth edge, or [`Triangle::CREASE`] and that of a crease.
     pub edges: [u32; 3],
     /// The rim on it does not count as outline.
     pub ignored: bool,

@@ -6,8 +6,6 @@
 //!
 //! **Guaranteed:** nothing that is on the rim is passed over: boxes are wider than rounding.
 
-use std::collections::HashMap;
-
 use biplane_geometry::Vector3;
 
 use crate::rim::{Crease, Side, Triangle, Wedge};
@@ -137,18 +135,20 @@ impl Tree {
         // In the order of the leaves, planes where they are used.
         let (old_triangles, old_creases) = (std::mem::take(triangles), std::mem::take(creases));
         let mut new_crease = vec![0_u32; old_creases.len()];
+        let mut slot_of = vec![u32::MAX; wedges.len()];
         let mut from = 0;
         for to in ends {
             let (first_slot, first_triangle, first_crease) =
                 (tree.wedges.len(), triangles.len(), creases.len());
             for item in &items[from..to] {
+                // A wedge has one slot in each leaf that it is in.
                 let mut slot = |w: u32| {
-                    let known = tree.wedges[first_slot..].iter().position(|v| *v == w);
-                    (first_slot
-                        + known.unwrap_or_else(|| {
-                            tree.wedges.push(w);
-                            tree.wedges.len() - 1 - first_slot
-                        })) as u32
+                    let last = &mut slot_of[w as usize];
+                    if *last == u32::MAX || (*last as usize) < first_slot {
+                        *last = tree.wedges.len() as u32;
+                        tree.wedges.push(w);
+                    }
+                    *last
                 };
                 match *item {
                     Item::Triangle(t) => {
@@ -174,13 +174,17 @@ impl Tree {
             });
             from = to;
         }
-        let mut numbered = HashMap::new();
+        let (mut number_of, mut numbered) = (vec![u32::MAX; 3 * triangles.len()], 0);
         for edge in triangles.iter_mut().flat_map(|t| &mut t.edges) {
             *edge = if *edge & Triangle::CREASE != 0 {
                 Triangle::CREASE | new_crease[(*edge & !Triangle::CREASE) as usize]
             } else {
-                let next = numbered.len() as u32;
-                *numbered.entry(*edge).or_insert(next)
+                let number = &mut number_of[*edge as usize];
+                if *number == u32::MAX {
+                    *number = numbered;
+                    numbered += 1;
+                }
+                *number
             };
         }
         for &w in &tree.wedges {

@@ -295,7 +295,7 @@ impl Outline {
             if mesh.wedges[wedges[0] as usize].at != crease.ends[0] {
                 g.swap(0, 1);
             }
-            self.crease_knot(projector, crease, g[0] / (g[0] - g[1]))?
+            Self::crease_knot(projector, crease, g[0] / (g[0] - g[1]))?
         } else {
             let known = &mut self.crossed[edge as usize];
             if known[0] == self.traces {
@@ -316,7 +316,7 @@ impl Outline {
         Some(number)
     }
 
-    fn crease_knot(&self, projector: &Projector, crease: &Crease, t: f64) -> Option<Knot> {
+    fn crease_knot(projector: &Projector, crease: &Crease, t: f64) -> Option<Knot> {
         let at = crease.at(t).0;
         let (pixel, depth) = projector.project(&at)?;
         let (normal, outward) = (Vector3::zeros(), Vector2::zeros());
