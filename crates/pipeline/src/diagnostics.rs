@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use crate::study::SET_FOR_EACH_BODY;
+
 /// One thing that is wrong in a file, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
@@ -136,7 +138,9 @@ pub fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> + Clo
 /// A problem from what the TOML reader says, with the nearest known word for a misspelt one.
 pub fn from_toml(error: &toml::de::Error, text: &str) -> Problem {
     let message = error.message().trim().to_owned();
-    let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let words = message.split('`').skip(1).step_by(2);
+    let words: Vec<&str> =
+        words.enumerate().filter(|(k, w)| *k == 0 || *w != SET_FOR_EACH_BODY).map(|w| w.1).collect();
     let mut problem =
         Problem { title: message.clone(), span: error.span(), label: String::new(), help: Vec::new() };
     if let (true, Some((found, known))) = (message.starts_with("unknown field"), words.split_first()) {

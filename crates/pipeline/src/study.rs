@@ -27,6 +27,9 @@ use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
 use crate::models::LANDMARKS;
 use crate::slices::SLICES;
 
+/// The key of `[match]` and `[contour]` that a run sets for each body from its `cut_ends`: nobody writes it, no message offers it.
+pub const SET_FOR_EACH_BODY: &str = "ignore_cut_ends";
+
 /// Points of a model from slices, where it is not said.
 const POINTS: u32 = 15_000;
 
@@ -357,7 +360,7 @@ impl Study {
         {
             if said {
                 let what = "each body says for itself whether its cut ends are outline: [[body]] cut_ends = \"ignore\"";
-                check.list.push(parameter(&text, table, Some("ignore_cut_ends"), what));
+                check.list.push(parameter(&text, table, Some(SET_FOR_EACH_BODY), what));
             }
         }
         if let Err(error) = file.spots.check() {
