@@ -35,7 +35,7 @@ pub use environment::{
 };
 pub use frame::Frame;
 pub use matched::{Alternative, Match, PoseRecord, StartsTried, Verdict, ViewFit};
-pub use model::{ModelMesh, Start};
+pub use model::{ModelMesh, Prediction, Start};
 pub use picture::Picture;
 pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};
 pub use slice_contours::{ContourSlice, SliceContour, SliceContours, SliceFlag, SlicePoint};

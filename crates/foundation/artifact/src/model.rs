@@ -44,6 +44,31 @@ impl Content for Start {
     }
 }
 
+/// Where the frames beside it say a body is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// `world_from_model`.
+    pub pose: Pose,
+    /// How far the mesh's centroid may be from there, mm.
+    pub within_mm: f64,
+    /// How far the body may be turned from there, rad.
+    pub within_rad: f64,
+}
+
+impl Content for Prediction {
+    const KIND: &'static str = "prediction";
+    const SCHEMA: u32 = 1;
+    fn content_hash(&self) -> ContentHash {
+        let Self { pose, within_mm, within_rad } = self;
+        let mut h = ContentHasher::new(Self::KIND, Self::SCHEMA);
+        for v in pose.translation().iter().chain(pose.rotation().as_ref().coords.iter()) {
+            h.float(*v);
+        }
+        h.float(*within_mm).float(*within_rad);
+        h.finish()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

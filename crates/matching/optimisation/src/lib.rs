@@ -24,6 +24,7 @@
 mod answer;
 mod bias;
 mod bingham;
+mod claimed;
 mod consistency;
 mod judge;
 mod noise;
@@ -31,6 +32,7 @@ mod refine;
 mod search;
 mod stage;
 mod starts;
+mod track;
 
 pub use answer::with_calibration;
 pub use bias::{BiasParams, take_out};
@@ -46,3 +48,4 @@ pub use stage::{
     Contrast, EdgeBias, MatchBody, MatchError, MatchInputs, MatchParams, Method, match_anywhere, match_body,
     prepared_rim,
 };
+pub use track::{TrackFrame, TrackFrameParams, TrackInputs, TrackParams};

@@ -408,7 +408,7 @@ impl<'a> Single<'a> {
         params: &'a MatchParams,
     ) -> Result<Self, String> {
         let mesh: &Mesh = &inputs.model.0;
-        let views = crate::stage::views(inputs);
+        let views = crate::stage::views_of(&inputs.curves, &inputs.calibrations);
         let way = match params.method {
             Method::Rim => Way::Rim(views),
             Method::Bingham2006 => {

@@ -201,6 +201,16 @@ pub enum MatchError {
         /// What it may be.
         expected: &'static str,
     },
+    /// A parameter of `[track]` out of range.
+    #[error("[track] {name} = {value}, expected {expected}")]
+    TrackParameter {
+        /// The key in pipeline.toml.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
     /// Curves and calibrations are not one a view.
     #[error(
         "{curves} views with curves but {calibrations} calibrations: expected one of each a view, and at least one"
@@ -438,12 +448,12 @@ pub fn prepared_rim(inputs: &MatchInputs, params: &MatchParams, context: &Contex
 }
 
 /// Fluoroscope and edges of each view.
-pub(crate) fn views(inputs: &MatchInputs) -> Vec<View> {
+pub(crate) fn views_of(curves: &[Hashed<Curves>], calibrations: &[Hashed<Calibration>]) -> Vec<View> {
     let of = |(curves, calibration): (&Hashed<Curves>, &Hashed<Calibration>)| {
         let fluoroscope = Fluoroscope::from(&**calibration);
         View { edges: EdgeField::new(curves, fluoroscope.distortion()), fluoroscope }
     };
-    inputs.curves.iter().zip(&inputs.calibrations).map(of).collect()
+    curves.iter().zip(calibrations).map(of).collect()
 }
 
 /// The stage `match`.
@@ -465,7 +475,7 @@ impl Stage for MatchBody {
             return Err(MatchError::Views { curves, calibrations });
         }
         let mesh = prepared_rim(inputs, params, context);
-        let views = views(inputs);
+        let views = views_of(&inputs.curves, &inputs.calibrations);
         let names: Vec<String> = inputs.calibrations.iter().map(|c| c.view.clone()).collect();
         let start = inputs.start.first().map(|start| &start.0);
         let uncertainty = inputs.calibration_uncertainty.first().map(|known| &**known);
