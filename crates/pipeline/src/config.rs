@@ -10,7 +10,7 @@ use biplane_distortion::DistortionParams;
 use biplane_environment::EnvironmentParams;
 use biplane_label_surface::LabelSurfaceParams;
 use biplane_lofting::LoftParams;
-use biplane_optimisation::MatchParams;
+use biplane_optimisation::{MatchParams, TrackParams};
 use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentParams, TraceParams};
 use biplane_slices::SlicesParams;
@@ -66,6 +66,9 @@ pub struct PipelineFile {
     /// How poses are found from the edges.
     #[serde(default, rename = "match")]
     pub matching: MatchParams,
+    /// How the frames of a trial, and the bodies of a frame, help each other.
+    #[serde(default)]
+    pub track: TrackParams,
     /// How edges are chosen for the outline of a posed body, and when a person should look.
     #[serde(default)]
     pub contour: ContourParams,

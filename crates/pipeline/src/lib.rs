@@ -35,4 +35,5 @@ pub mod steps;
 pub mod study;
 pub mod summary;
 pub mod tables;
+pub mod tracking;
 pub mod walk;

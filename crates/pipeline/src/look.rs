@@ -1,15 +1,19 @@
 //! What a run would do, without doing it: `plan` and `explain`.
 
-use biplane_stage::{Context, Explanation, Item, Store, StoreError};
+use std::sync::{Mutex, PoisonError};
+
+use biplane_artifact::{Contour, Curves, Match};
+use biplane_stage::{Context, Explanation, Hashed, Item, Store, StoreError, Stored};
 use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, calibrate};
 use crate::edits::Drawn;
 use crate::models;
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps};
+use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps, TRACK, read_stored};
 use crate::study::Study;
 use crate::summary::aligned;
+use crate::tracking::{Attempt, Single, Tracked, track};
 use crate::walk::Way;
 
 /// Why nothing can be said.
@@ -72,7 +76,8 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
         store: &store,
         context: &context,
     };
-    let looks: Vec<Vec<Look>> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
+    let mut frames: Vec<FrameLook> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
+    look_together(&steps, &mut frames);
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");
     }
@@ -80,10 +85,107 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
         Way::Look(before) => before,
         Way::Run(_) => Vec::new(),
     };
-    Ok(before.into_iter().chain(made).chain(looks.into_iter().flatten()).collect())
+    Ok(before.into_iter().chain(made).chain(frames.into_iter().flat_map(|f| f.looks)).collect())
 }
 
-fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
+/// What is known of one frame.
+struct FrameLook {
+    looks: Vec<Look>,
+    /// Whether a picture, or an edit, cannot be used.
+    fails: bool,
+    bodies: Vec<BodyLook>,
+}
+
+/// What is in the store of one body of a frame.
+#[derive(Default)]
+struct BodyLook {
+    curves: Vec<Stored<Curves>>,
+    matched: Option<Stored<Match>>,
+    /// One a view; none where a person drew it.
+    contours: Vec<Option<Stored<Contour>>>,
+}
+
+/// Looks at what the frames of a trial do for each other, and at what is drawn of them.
+fn look_together(steps: &Steps<'_>, frames: &mut [FrameLook]) {
+    let prepared = steps.prepared;
+    let all = frames.iter().all(|f| f.bodies.iter().all(|b| b.matched.is_some()) || f.fails);
+    let looks: Mutex<Vec<(usize, Look)>> = Mutex::default();
+    let item_of = |job: &Job, place: usize| steps.item(job, &prepared.study.bodies[job.bodies[place].0].name);
+    let tracked = if all && prepared.study.tracks() {
+        let read = |frame: &FrameLook| {
+            let matches = frame.bodies.iter().map(|b| read_stored(steps.store, b.matched.as_ref()?).ok());
+            let outline = |c: &Option<Stored<Contour>>| read_stored(steps.store, c.as_ref()?).ok();
+            let outlines: Vec<Vec<Option<Hashed<Contour>>>> =
+                frame.bodies.iter().map(|b| b.contours.iter().map(outline).collect()).collect();
+            let mut of_bodies: Vec<Vec<Option<&Contour>>> = Vec::new();
+            for outlines in &outlines {
+                of_bodies.push(outlines.iter().map(Option::as_deref).collect());
+            }
+            Single::of(matches.collect(), &of_bodies)
+        };
+        let singles: Vec<Single> = frames.par_iter().map(read).collect();
+        let attempt = |wanted: &Attempt| {
+            let explained = steps.explain_track(wanted, &frames[wanted.job].bodies[wanted.place].curves);
+            let (look, found) = match explained {
+                Ok((why, stored)) => {
+                    let fate = if why.cached() { Fate::Cached } else { Fate::Runs };
+                    let found = stored.and_then(|stored| read_stored(steps.store, &stored).ok());
+                    (Look { step: TRACK, fate, line: why.to_string() }, found)
+                }
+                Err(error) => {
+                    let name = item_of(&prepared.jobs[wanted.job], wanted.place);
+                    let line = format!("{TRACK}/{name}: {}", prepared.study.shorten(&error.to_string()));
+                    (Look { step: TRACK, fate: Fate::Fails, line }, None)
+                }
+            };
+            looks.lock().unwrap_or_else(PoisonError::into_inner).push((wanted.job, look));
+            Ok(found)
+        };
+        // Looking stops for nothing.
+        track(prepared, &singles, &steps.pivots(), &attempt).unwrap_or_default()
+    } else {
+        for (number, job) in prepared.jobs.iter().enumerate() {
+            let before = (0..job.bodies.len()).map(|place| item_of(job, place));
+            let before = before.filter(|item| steps.ever_made(TRACK, item));
+            let mut looks = looks.lock().unwrap_or_else(PoisonError::into_inner);
+            looks.extend(before.map(|item| (number, Look::after(TRACK, &item, true))));
+        }
+        Tracked::default()
+    };
+    let mut looks = looks.into_inner().unwrap_or_else(PoisonError::into_inner);
+    looks.sort_by(|a, b| (a.0, &a.1.line).cmp(&(b.0, &b.1.line)));
+    for (number, look) in looks {
+        frames[number].looks.push(look);
+    }
+    frames.par_iter_mut().enumerate().for_each(|(number, frame)| {
+        let job = &prepared.jobs[number];
+        let mut matches = Vec::new();
+        for (place, body) in frame.bodies.iter().enumerate() {
+            match tracked.changed.get(&(number, place)) {
+                Some(found) => {
+                    for (slot, curves) in body.curves.iter().enumerate() {
+                        let item = steps.item_of_body(job, slot, place);
+                        frame.looks.push(after(steps, CONTOUR, &item, false, true, || {
+                            Ok(steps.explain_contour(job, slot, place, curves, found.promise())?.0)
+                        }));
+                    }
+                    matches.push(found.promise());
+                }
+                None => matches.extend(body.matched.as_ref().map(Stored::promise)),
+            }
+        }
+        for slot in 0..job.pictures.len() {
+            let item = steps.item(job, steps.view(job, slot).1);
+            // Where it is not known yet what frames do for each other, those that needed nothing most likely need nothing again.
+            let alone = all || (0..job.bodies.len()).all(|p| !steps.ever_made(TRACK, &item_of(job, p)));
+            let ready = alone && matches.len() == job.bodies.len();
+            let explain = || steps.explain_overlay(job, slot, &matches);
+            frame.looks.push(after(steps, OVERLAY, &item, frame.fails, ready, explain));
+        }
+    });
+}
+
+fn look_at(steps: &Steps<'_>, job: &Job) -> FrameLook {
     let study = &steps.prepared.study;
     let mut looks = Vec::new();
     let mut curves = Vec::new();
@@ -105,7 +207,7 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
     let drawn: Vec<Option<Drawn>> =
         (0..job.pictures.len()).map(|slot| drawn_in(steps, job, slot, &mut looks)).collect();
     let fails = looks.iter().any(|l| l.fate == Fate::Fails);
-    let mut matches = Vec::new();
+    let mut bodies = Vec::new();
     for (place, (body, _, _)) in job.bodies.iter().enumerate() {
         let mut own = Vec::new();
         for (slot, drawn) in drawn.iter().enumerate() {
@@ -130,25 +232,28 @@ fn look_at(steps: &Steps<'_>, job: &Job) -> Vec<Look> {
         let mut matched = None;
         looks.push(after(steps, MATCH, &item, fails, ready, || {
             let (why, stored) = steps.explain_match(job, place, &own)?;
-            matched = stored.map(|s| s.promise());
+            matched = stored;
             Ok(why)
         }));
+        let mut contours = Vec::new();
         for (slot, curves) in (0..job.pictures.len()).map(|slot| (slot, own.get(slot))) {
             let item = steps.item_of_body(job, slot, place);
-            let ready = curves.zip(matched).filter(|_| own.len() == job.pictures.len());
+            let ready = curves.zip(matched.as_ref()).filter(|_| own.len() == job.pictures.len());
+            let mut found = None;
             looks.push(after(steps, CONTOUR, &item, fails, ready.is_some(), || match ready {
-                Some((curves, matched)) => Ok(steps.explain_contour(job, slot, place, curves, matched)?.0),
+                Some((curves, matched)) => {
+                    let (why, stored) = steps.explain_contour(job, slot, place, curves, matched.promise())?;
+                    found = stored;
+                    Ok(why)
+                }
                 None => Err(ItemError::Cancelled),
             }));
+            let edited = drawn[slot].as_ref().is_some_and(|d| d.of(place).is_some());
+            contours.push(found.filter(|_| !edited));
         }
-        matches.extend(matched);
+        bodies.push(BodyLook { curves: own, matched, contours });
     }
-    for slot in 0..job.pictures.len() {
-        let item = steps.item(job, steps.view(job, slot).1);
-        let ready = matches.len() == job.bodies.len();
-        looks.push(after(steps, OVERLAY, &item, fails, ready, || steps.explain_overlay(job, slot, &matches)));
-    }
-    looks
+    FrameLook { looks, fails, bodies }
 }
 
 /// What a person drew in a picture; a look at what cannot be read.

@@ -6,6 +6,7 @@ use biplane_artifact::{AxesSource, Match, Side, SurfaceReport, Verdict};
 use biplane_geometry::Pose;
 
 use crate::calibrate::Calibrated;
+use crate::tracking::Bridge;
 
 /// Where a start pose came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub enum StartKind {
     Interpolated,
     /// None was given: the body is looked for anywhere.
     Anywhere,
+    /// Where other frames say it is, or without the edges of other bodies: what the frame gave by itself was tried again.
+    Neighbours,
 }
 
 impl StartKind {
@@ -28,6 +31,7 @@ impl StartKind {
             Self::File => "file",
             Self::Interpolated => "interpolated",
             Self::Anywhere => "anywhere",
+            Self::Neighbours => "neighbours",
         }
     }
 }
@@ -43,6 +47,8 @@ pub struct BodyOutcome {
     pub start_pose: Option<Pose>,
     /// The match, or why there is none.
     pub result: Result<Match, String>,
+    /// Where it is said to be all the same, where it is lost and frames beside it are to bridge that.
+    pub bridged: Option<Bridge>,
     /// Its outline in each view, in the order of the trial's views; empty where there is no match.
     pub contours: Vec<ContourOutcome>,
 }
@@ -69,12 +75,16 @@ impl BodyOutcome {
         views.map(|(slot, c)| (slot, c.flags.as_slice()))
     }
 
-    /// Why the verdict is not good; empty if it is.
+    /// Why the verdict is not good, or what made it good beside the frame itself; mostly empty if it is.
     pub fn reason(&self) -> String {
-        match &self.result {
+        let bridged = self.bridged.as_ref().map(|b| {
+            format!("the pose is no match: it bridges frames {} and {}; ", b.between[0], b.between[1])
+        });
+        let reason = match &self.result {
             Ok(found) => found.reason.clone(),
             Err(message) => format!("not matched: {message}"),
-        }
+        };
+        bridged.unwrap_or_default() + &reason
     }
 
     /// Root mean square over the views of the fit in mm and in px, if there is a match.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 16] = [
+const ORDER: [&str; 17] = [
     "study",
     "fluoroscope",
     "plate",
@@ -22,6 +22,7 @@ const ORDER: [&str; 16] = [
     "segment",
     "edit",
     "match",
+    "track",
     "contour",
     "doctor",
     "output",

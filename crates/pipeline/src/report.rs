@@ -474,6 +474,7 @@ mod tests {
             segment: Default::default(),
             edit: Default::default(),
             matching: Default::default(),
+            tracking: Default::default(),
             contour: Default::default(),
             output: "/study/results".into(),
         }
@@ -490,6 +491,7 @@ mod tests {
                 start: StartKind::File,
                 start_pose: Some(biplane_geometry::Pose::identity()),
                 result: Err("a < b".into()),
+                bridged: None,
                 contours: vec![],
             }],
             overlays: vec![(0, format!("overlays/lunge/{i:04}_A.png").into())],

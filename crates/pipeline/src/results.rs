@@ -135,6 +135,7 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
     ];
     // Where no match could be made, the search ended where it would have started.
     let pose = body.result.as_ref().ok().map(|m| m.pose).or(body.start_pose.map(PoseRecord::from));
+    let pose = body.bridged.as_ref().map(|bridge| bridge.pose).or(pose);
     match pose {
         Some(pose) => cells.extend(pose_cells(pose)),
         None => cells.extend(empty(POSE.len())),
@@ -142,7 +143,8 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
     cells.push(frame.time_s.map_or(String::new(), |t| fixed(t, 6)));
     cells.push(body.start.word().to_owned());
     cells.push(body.reason());
-    let found = body.result.as_ref().ok();
+    // What is stated of a match is not stated of a bridge.
+    let found = body.result.as_ref().ok().filter(|_| body.bridged.is_none());
     for view in 0..study.views.len() {
         let fit = trial.frames.iter().position(|(v, _)| *v == view).and_then(|i| found?.views.get(i));
         match fit {

@@ -1,11 +1,12 @@
-//! Runs a study: calibration pictures to fluoroscopes, every frame's pictures to curves, curves to poses, poses to overlays,
-//! then `poses.csv` and the report.
+//! Runs a study: calibration pictures to fluoroscopes, every frame's pictures to curves, curves to poses, frames that need it once more with
+//! what those beside them say, poses to overlays, then `poses.csv` and the report.
 //!
 //! Frames are spread over threads; what comes out does not depend on how many, nor on the order they finish in. A frame
 //! that fails stops nothing but itself.
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use biplane_artifact::{Contour, Curves, Match};
 use biplane_stage::{Context, Hashed, How, Item, Store, StoreError, Stored};
@@ -17,16 +18,17 @@ use crate::edits::Drawn;
 use crate::logging::Progress;
 use crate::made::Made;
 use crate::models;
-use crate::outcome::{BodyOutcome, ContourOutcome, Failure, FrameOutcome, Outcome, StepCount};
+use crate::outcome::{BodyOutcome, ContourOutcome, Failure, FrameOutcome, Outcome, StartKind, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
 use crate::slices;
 use crate::steps::{
     AXES, CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, LABEL_SURFACE, LOFT, MATCH, MODEL,
-    OVERLAY, SEGMENT, SLICES, SPOTS, STEPS, Steps,
+    OVERLAY, SEGMENT, SLICES, SPOTS, STEPS, Steps, TRACK,
 };
 use crate::study::{Plate, PlateSource, Study, SurfaceSource, ViewSource};
+use crate::tracking::{Attempt, Single, Tracked, track};
 use crate::walk::Way;
 
 /// Why a run came to no end.
@@ -82,6 +84,19 @@ struct Frame {
     edits: [usize; 2],
     /// Overlays and the hashes of their bytes.
     made: Vec<(String, String)>,
+    /// One a body: what it was matched by, and to.
+    bodies: Vec<BodyState>,
+    /// What the frame gave by itself.
+    single: Single,
+}
+
+/// What one body of a frame was matched by, and to.
+#[derive(Default)]
+struct BodyState {
+    curves: Vec<Stored<Curves>>,
+    /// Whether a person drew it, one a view.
+    edited: Vec<bool>,
+    matched: Option<Hashed<Match>>,
 }
 
 /// Runs everything that is to do on `threads` threads (0: one a core) and writes the results.
@@ -153,7 +168,11 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     });
     drop(progress);
     let done = frames.iter().flatten().count();
-    let stopped = done < frames.len();
+    let mut stopped = done < frames.len();
+    let mut frames = frames;
+    if !stopped {
+        stopped = pool.install(|| together(&steps_of_frames, &mut frames)).is_none();
+    }
     let written = calibrated.write(&prepared.study.output, &prepared.study.views);
     let written = written.map_err(|(place, source)| RunError::Write {
         path: slashes(&prepared.study.output.join(place)),
@@ -219,6 +238,8 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
         inputs: Vec::new(),
         edits: [0; 2],
         made: Vec::new(),
+        bodies: Vec::new(),
+        single: Single::default(),
     };
     let slots: Vec<_> =
         (0..job.pictures.len()).into_par_iter().map(|slot| steps.segment(job, slot)).collect();
@@ -250,31 +271,126 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
             }
         })
         .collect();
-    let mut matches = Vec::new();
+    let mut outlines = Vec::new();
     for (place, ((body, start, pose), result)) in job.bodies.iter().zip(bodies).enumerate() {
-        let mut contours = Vec::new();
+        let mut contours: Vec<Option<Hashed<Contour>>> = Vec::new();
+        let mut state = BodyState::default();
         let result = match result {
             // What only follows from another failure is not listed again.
             Err(message) => {
                 frame.counts.entry(MATCH).or_default().failed += 1;
                 Err(message)
             }
-            Ok(body) => keep_body(steps, job, place, body, &mut frame, &mut matches, &mut contours)?,
+            Ok(body) => keep_body(steps, job, place, body, &mut frame, &mut state, &mut contours)?,
         };
         frame.outcome.bodies.push(BodyOutcome {
             body: *body,
             start: start.clone(),
             start_pose: pose.as_ref().map(|start| start.0),
             result,
-            contours,
+            bridged: None,
+            contours: contour_outcomes(&state.edited, &contours),
         });
+        frame.bodies.push(state);
+        outlines.push(contours);
     }
+    let matches = frame.bodies.iter().map(|body| body.matched.clone()).collect();
+    let mut automatic: Vec<Vec<Option<&Contour>>> = Vec::new();
+    for (body, found) in frame.bodies.iter().zip(&outlines) {
+        let own = found.iter().zip(&body.edited);
+        automatic.push(own.map(|(found, edited)| found.as_deref().filter(|_| !edited)).collect());
+    }
+    frame.single = Single::of(matches, &automatic);
+    Some(frame)
+}
+
+/// Whether a person drew each outline of a body, and what of it one should look at.
+fn contour_outcomes(edited: &[bool], found: &[Option<Hashed<Contour>>]) -> Vec<ContourOutcome> {
+    let outlines = edited.iter().zip(found);
+    let outcome = |(edited, found): (&bool, &Option<Hashed<Contour>>)| ContourOutcome {
+        edited: *edited,
+        // Where a person drew, a person has looked.
+        flags: found.as_ref().filter(|_| !edited).map(|found| found.flags.clone()).unwrap_or_default(),
+    };
+    outlines.map(outcome).collect()
+}
+
+/// Lets the frames of a trial help each other, then draws them all; `None` if the run was stopped.
+fn together(steps: &Steps<'_>, frames: &mut [Option<Frame>]) -> Option<()> {
+    let prepared = steps.prepared;
+    let single = |frame: &mut Option<Frame>| frame.as_mut().map(|f| std::mem::take(&mut f.single));
+    let singles: Vec<Single> = frames.iter_mut().map(|frame| single(frame).unwrap_or_default()).collect();
+    let tries: Mutex<Vec<(usize, String, Done<()>)>> = Mutex::default();
+    let attempt = |wanted: &Attempt| {
+        let job = &prepared.jobs[wanted.job];
+        let body = frames.get(wanted.job).and_then(Option::as_ref).and_then(|f| f.bodies.get(wanted.place));
+        let Some(body) = body else { return Ok(None) };
+        let (found, kept) = match steps.track(wanted, &body.curves) {
+            Ok((found, how)) => (Some(found), Ok(((), how))),
+            Err(ItemError::Cancelled) => return Err(ItemError::Cancelled),
+            // It stays as it was.
+            Err(failed) => (None, Err(failed)),
+        };
+        let item = steps.item(job, &prepared.study.bodies[job.bodies[wanted.place].0].name);
+        let mut tries = tries.lock().unwrap_or_else(PoisonError::into_inner);
+        tries.push((wanted.job, format!("{TRACK}/{item}"), kept));
+        Ok(found)
+    };
+    let tracked = track(prepared, &singles, &steps.pivots(), &attempt).ok()?;
+    let mut tries = tries.into_inner().unwrap_or_else(PoisonError::into_inner);
+    tries.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
+    for (job, item, result) in tries {
+        if let Some(frame) = &mut frames[job] {
+            let _ = frame.keep(&prepared.study, TRACK, &item, result)?;
+        }
+    }
+    let progress = Progress::new("Drawing", frames.len(), "frames");
+    let drawn: Vec<Option<()>> = frames
+        .par_iter_mut()
+        .enumerate()
+        .map(|(number, frame)| {
+            progress.tick();
+            finish_frame(steps, number, frame.as_mut()?, &tracked)
+        })
+        .collect();
+    drawn.into_iter().collect()
+}
+
+/// Gives a frame what others changed in it, and draws it; `None` if the run was stopped.
+fn finish_frame(steps: &Steps<'_>, number: usize, frame: &mut Frame, tracked: &Tracked) -> Option<()> {
+    if steps.context.cancelled() {
+        return None;
+    }
+    let (job, study) = (&steps.prepared.jobs[number], &steps.prepared.study);
+    for place in 0..frame.bodies.len() {
+        frame.outcome.bodies[place].bridged = tracked.bridged.get(&(number, place)).cloned();
+        let Some(found) = tracked.changed.get(&(number, place)) else { continue };
+        let mut state = std::mem::take(&mut frame.bodies[place]);
+        let anew: Vec<_> = state
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(slot, curves)| steps.contour(job, slot, place, curves, found))
+            .collect();
+        let mut contours = Vec::new();
+        for (slot, result) in anew.into_iter().enumerate() {
+            let name = format!("{CONTOUR}/{}", steps.item_of_body(job, slot, place));
+            contours.push(frame.keep(study, CONTOUR, &name, result)?.ok());
+        }
+        state.matched = Some(found.clone());
+        let outcome = &mut frame.outcome.bodies[place];
+        outcome.start = StartKind::Neighbours;
+        outcome.result = Ok(Match::clone(found));
+        outcome.contours = contour_outcomes(&state.edited, &contours);
+        frame.bodies[place] = state;
+    }
+    let matches: Vec<Hashed<Match>> = frame.bodies.iter().filter_map(|body| body.matched.clone()).collect();
     if matches.len() == job.bodies.len() {
-        overlays(steps, job, &matches, &mut frame)?;
+        overlays(steps, job, &matches, frame)?;
     } else {
         frame.counts.entry(OVERLAY).or_default().failed += job.pictures.len();
     }
-    Some(frame)
+    Some(())
 }
 
 /// What a person drew in the pictures of a frame; `None` if the run was stopped.
@@ -316,6 +432,7 @@ fn drawn_in_frame(
 
 /// What became of one body of a frame, item by item.
 struct BodyRun {
+    curves: Vec<Stored<Curves>>,
     traced: Vec<(Item, Result<How, ItemError>)>,
     matched: Done<Hashed<Match>>,
     /// With whether a person drew it.
@@ -347,7 +464,7 @@ fn run_body(
     if curves.len() < automatic.len() {
         let failed = traced.iter().find(|(_, result)| result.is_err());
         let name = failed.map(|(item, _)| format!("{EDIT}/{item} failed")).unwrap_or_default();
-        return BodyRun { traced, matched: Err(ItemError::Failed(name)), contours: Vec::new() };
+        return BodyRun { curves, traced, matched: Err(ItemError::Failed(name)), contours: Vec::new() };
     }
     let matched = steps.matching(job, place, &curves);
     let contours = matched.iter().flat_map(|(found, _)| {
@@ -357,7 +474,7 @@ fn run_body(
         })
     });
     let contours = contours.collect();
-    BodyRun { traced, matched, contours }
+    BodyRun { curves, traced, matched, contours }
 }
 
 /// Counts what became of a body; `None` if the run was stopped.
@@ -367,8 +484,8 @@ fn keep_body(
     place: usize,
     body: BodyRun,
     frame: &mut Frame,
-    matches: &mut Vec<Hashed<Match>>,
-    contours: &mut Vec<ContourOutcome>,
+    state: &mut BodyState,
+    contours: &mut Vec<Option<Hashed<Contour>>>,
 ) -> Option<Result<Match, String>> {
     let study = &steps.prepared.study;
     let mut follows = false;
@@ -386,16 +503,12 @@ fn keep_body(
     };
     for (item, result, edited) in body.contours {
         let name = format!("{CONTOUR}/{item}");
-        let found = frame.keep(study, CONTOUR, &name, result)?;
-        // Where a person drew, a person has looked.
-        let flags = found.ok().filter(|_| !edited).map(|found| found.flags.clone());
-        contours.push(ContourOutcome { edited, flags: flags.unwrap_or_default() });
+        state.edited.push(edited);
+        contours.push(frame.keep(study, CONTOUR, &name, result)?.ok());
     }
-    Some(result.map(|found| {
-        let own = Match::clone(&found);
-        matches.push(found);
-        own
-    }))
+    state.curves = body.curves;
+    state.matched = result.as_ref().ok().cloned();
+    Some(result.map(|found| Match::clone(&found)))
 }
 
 impl Frame {
@@ -596,6 +709,7 @@ fn provenance(prepared: &Prepared) -> Provenance {
     parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));
     parameters.push((EDIT.to_owned(), text(toml::to_string(&study.edit))));
     parameters.push((MATCH.to_owned(), text(toml::to_string(&study.matching))));
+    parameters.push((TRACK.to_owned(), text(toml::to_string(&study.tracking))));
     parameters.push((CONTOUR.to_owned(), text(toml::to_string(&study.contour))));
     Provenance { parameters, inputs }
 }
@@ -619,7 +733,7 @@ mod tests {
 
     fn body(result: Result<Match, String>) -> BodyOutcome {
         let start_pose = Some(biplane_geometry::Pose::identity());
-        BodyOutcome { body: 0, start: crate::outcome::StartKind::File, start_pose, result, contours: vec![] }
+        BodyOutcome { body: 0, start: StartKind::File, start_pose, result, bridged: None, contours: vec![] }
     }
 
     #[test]
@@ -638,6 +752,8 @@ mod tests {
             edits: [1, 0],
             inputs: vec![("b".into(), "2".into()), ("a".into(), "1".into())],
             made: vec![],
+            bodies: vec![],
+            single: Single::default(),
         };
         let mut provenance = Provenance { parameters: vec![], inputs: vec![("c".into(), "3".into())] };
         let steps = STEPS.map(|name| (name, StepCount::default()));

@@ -1,7 +1,8 @@
 //! The steps of the method as items of a study: what each reads, its name in the store, how it runs and is explained.
 //!
 //! `segment/<trial>/<frame>/<view>` makes curves from a picture, `edit/<trial>/<frame>/<view>/<body>` from what a person drew in it,
-//! `match/<trial>/<frame>/<body>` a pose from the curves of all views, `contour/<trial>/<frame>/<view>/<body>` says which curves are
+//! `match/<trial>/<frame>/<body>` a pose from the curves of all views, `track/<trial>/<frame>/<body>` one more where other frames or bodies
+//! help, `contour/<trial>/<frame>/<view>/<body>` says which curves are
 //! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies. Those of slices are in
 //! [`crate::slices`], those of models in [`crate::models`].
 
@@ -9,7 +10,8 @@ use biplane_artifact::{
     Artifact, CalibrationUncertainty, Contour, Curves, EditedContour, Match, ModelMesh, Picture,
 };
 use biplane_contour::{ContourInputs, ContourOf};
-use biplane_optimisation::{MatchBody, MatchInputs};
+use biplane_geometry::Point3;
+use biplane_optimisation::{MatchBody, MatchInputs, TrackFrame, TrackInputs};
 use biplane_segmentation::{Segment, SegmentInputs, Trace, TraceInputs};
 use biplane_stage::{
     Context, ExecuteError, Explanation, Hashed, How, Item, KeyParts, ParamsText, Promise, Promised, Stage,
@@ -23,6 +25,7 @@ use crate::overlay::{Overlay, OverlayInputs, OverlayParams};
 use crate::prepare::{Job, Prepared};
 use crate::sources::FrameFacts;
 use crate::study::ViewSource;
+use crate::tracking::Attempt;
 
 /// Step of holes and beads in calibration pictures.
 pub const SPOTS: &str = "spots";
@@ -50,12 +53,14 @@ pub const SEGMENT: &str = "segment";
 pub const EDIT: &str = "edit";
 /// Step of poses.
 pub const MATCH: &str = "match";
+/// Step of poses from what other frames and bodies say.
+pub const TRACK: &str = "track";
 /// Step of the curves that are outlines.
 pub const CONTOUR: &str = "contour";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 15] = [
+pub const STEPS: [&str; 16] = [
     SPOTS,
     DISTORTION,
     ENVIRONMENT,
@@ -69,6 +74,7 @@ pub const STEPS: [&str; 15] = [
     SEGMENT,
     EDIT,
     MATCH,
+    TRACK,
     CONTOUR,
     OVERLAY,
 ];
@@ -452,6 +458,86 @@ impl Steps<'_> {
             )
             .map_err(|e| self.failed(job, None, e))?;
         Ok((read_stored(self.store, &done.output).map_err(ItemError::Failed)?, done.how))
+    }
+
+    fn track_parts(
+        &self,
+        wanted: &Attempt,
+        curves: &[Stored<Curves>],
+    ) -> Result<(ParamsText, TrackInputs<Promised>), ItemError> {
+        let job = &self.prepared.jobs[wanted.job];
+        let body = job.bodies[wanted.place].0;
+        let others: Vec<usize> = wanted.others.iter().map(|(place, _)| job.bodies[*place].0).collect();
+        let params =
+            ParamsText::of(&self.prepared.study.tracking_of(body, &others)).map_err(ItemError::of)?;
+        let MatchInputs { curves, calibrations, model, start: _, calibration_uncertainty } =
+            self.match_promised(job, wanted.place, curves)?;
+        let promised = TrackInputs {
+            curves,
+            calibrations,
+            model,
+            own: wanted.own.promise(),
+            predicted: wanted.predicted.iter().map(Hashed::promise).collect(),
+            others: others
+                .iter()
+                .map(|body| self.model(*body).map(BodyModel::promise))
+                .collect::<Result<_, _>>()?,
+            other_matches: wanted.others.iter().map(|(_, found)| found.promise()).collect(),
+            calibration_uncertainty,
+        };
+        Ok((params, promised))
+    }
+
+    /// Tries a body in a frame again, with what other frames and bodies say.
+    ///
+    /// # Errors
+    /// The stage failed, or the store did.
+    pub fn track(&self, wanted: &Attempt, curves: &[Stored<Curves>]) -> Done<Hashed<Match>> {
+        let job = &self.prepared.jobs[wanted.job];
+        let (params, promised) = self.track_parts(wanted, curves)?;
+        let load = || -> Result<TrackInputs, String> {
+            let MatchInputs { curves, calibrations, model, start: _, calibration_uncertainty } =
+                self.match_inputs(job, wanted.place, curves)?;
+            let others = wanted.others.iter().map(|(place, _)| self.load_model(job.bodies[*place].0));
+            Ok(TrackInputs {
+                curves,
+                calibrations,
+                model,
+                own: wanted.own.clone(),
+                predicted: wanted.predicted.clone(),
+                others: others.collect::<Result<_, _>>()?,
+                other_matches: wanted.others.iter().map(|(_, found)| found.clone()).collect(),
+                calibration_uncertainty,
+            })
+        };
+        let item = self.item(job, &self.prepared.study.bodies[job.bodies[wanted.place].0].name);
+        let done = self
+            .store
+            .execute::<TrackFrame, _>(TRACK, &item, &params, &promised, load, self.context)
+            .map_err(|e| self.failed(job, None, e))?;
+        Ok((read_stored(self.store, &done.output).map_err(ItemError::Failed)?, done.how))
+    }
+
+    /// Why a body would be tried again, and its match if it is there.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn explain_track(&self, wanted: &Attempt, curves: &[Stored<Curves>]) -> Explained<Match> {
+        let job = &self.prepared.jobs[wanted.job];
+        let (params, promised) = self.track_parts(wanted, curves)?;
+        let parts = KeyParts::of::<TrackFrame>(&params, &promised);
+        let item = self.item(job, &self.prepared.study.bodies[job.bodies[wanted.place].0].name);
+        self.explain::<TrackFrame>(TRACK, &item, &parts)
+    }
+
+    /// The middle of each body of the study in its model, as far as it is known, mm.
+    pub fn pivots(&self) -> Vec<Point3> {
+        let of = |body| match self.model(body) {
+            Ok(BodyModel::File(file)) => Point3::from(file.facts.centroid),
+            Ok(BodyModel::Made(mesh)) => mesh.0.area_centroid(),
+            Err(_) => Point3::origin(),
+        };
+        (0..self.prepared.study.bodies.len()).map(of).collect()
     }
 
     fn overlay_params(&self, job: &Job) -> Result<ParamsText, ItemError> {

@@ -13,7 +13,7 @@ use biplane_distortion::{DistortionError, DistortionParams};
 use biplane_environment::EnvironmentParams;
 use biplane_label_surface::LabelSurfaceParams;
 use biplane_lofting::LoftParams;
-use biplane_optimisation::{MatchError, MatchParams, Method};
+use biplane_optimisation::{MatchError, MatchParams, Method, TrackFrameParams, TrackParams};
 use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentError, SegmentParams, TraceError, TraceParams};
 use biplane_slices::SlicesParams;
@@ -64,6 +64,8 @@ pub struct Study {
     pub edit: TraceParams,
     /// How poses are found.
     pub matching: MatchParams,
+    /// How frames help each other.
+    pub tracking: TrackParams,
     /// How edges are chosen for outlines.
     pub contour: ContourParams,
     /// Limits of `doctor`.
@@ -266,6 +268,21 @@ impl Study {
         MatchParams { ignore_cut_ends, ..self.matching.clone() }
     }
 
+    /// How a body in a frame is tried again.
+    pub fn tracking_of(&self, body: usize, others: &[usize]) -> TrackFrameParams {
+        let cut = |body: &usize| self.bodies.get(*body).is_some_and(|b| b.ignore_cut_ends);
+        TrackFrameParams {
+            matching: self.matching_of(body),
+            claim_px: self.tracking.claim_px,
+            others_without_cut_ends: others.iter().map(cut).collect(),
+        }
+    }
+
+    /// Whether frames help each other.
+    pub fn tracks(&self) -> bool {
+        self.tracking.enabled && self.matching.method == Method::Rim
+    }
+
     /// How the contour of a body is chosen.
     pub fn contour_of(&self, body: usize) -> ContourParams {
         let ignore_cut_ends = self.bodies.get(body).is_some_and(|b| b.ignore_cut_ends);
@@ -351,9 +368,16 @@ impl Study {
             let key = match &error {
                 MatchError::Parameter { name, .. } => Some(*name),
                 MatchError::Optimiser { .. } => Some("search.optimiser"),
-                MatchError::Views { .. } | MatchError::NoStart | MatchError::Cancelled => None,
+                MatchError::TrackParameter { .. }
+                | MatchError::Views { .. }
+                | MatchError::NoStart
+                | MatchError::Cancelled => None,
             };
             check.list.push(parameter(&text, "match", key, &error.to_string()));
+        }
+        if let Err(error) = file.track.check() {
+            let key = if let MatchError::TrackParameter { name, .. } = &error { Some(*name) } else { None };
+            check.list.push(parameter(&text, "track", key, &error.to_string()));
         }
         for (table, said) in
             [("match", file.matching.ignore_cut_ends), ("contour", file.contour.ignore_cut_ends)]
@@ -406,6 +430,7 @@ impl Check {
             segment,
             edit,
             matching,
+            track,
             contour,
             doctor,
             output,
@@ -469,6 +494,7 @@ impl Check {
             segment,
             edit,
             matching,
+            tracking: track,
             contour,
             doctor,
             output: folder,

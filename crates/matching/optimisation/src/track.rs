@@ -218,8 +218,13 @@ fn decide(
         if a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).is_lt() { m } else { best }
     });
     let mut found = best.cloned().unwrap_or(own.clone());
-    if found.verdict == Verdict::Failed {
-        found.reason = format!("lost: {}; {}", seen(), found.reason);
+    match found.verdict {
+        Verdict::Failed => found.reason = format!("lost: {}; {}", seen(), found.reason),
+        Verdict::Good => {
+            found.verdict = Verdict::Doubtful;
+            found.reason = "fits, but does not lie where the frames beside it say".to_owned();
+        }
+        Verdict::Doubtful | Verdict::Ambiguous => {}
     }
     count(found)
 }
@@ -384,6 +389,9 @@ mod tests {
         let tried = vec![at(0.0, Verdict::Failed, 0.6), at(0.1, Verdict::Doubtful, 0.5)];
         let found = decided(at(30.0, Verdict::Failed, 0.4), tried, &expected_at(0.0));
         assert_eq!(found, (0.1, Verdict::Doubtful, "why".to_owned()));
+        let tried = vec![at(9.0, Verdict::Good, 0.1)];
+        let (_, verdict, reason) = decided(at(30.0, Verdict::Failed, 0.7), tried, &expected_at(0.0));
+        assert_eq!(verdict, Verdict::Doubtful, "fits elsewhere: {reason}");
         let tried = vec![at(0.0, Verdict::Failed, 0.6)];
         let (_, verdict, reason) = decided(at(30.0, Verdict::Failed, 0.7), tried, &expected_at(0.0));
         assert_eq!((verdict, reason.as_str()), (Verdict::Failed, "lost: nothing is seen; why"));

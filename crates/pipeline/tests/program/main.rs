@@ -9,3 +9,4 @@ mod models;
 mod scene;
 mod slices;
 mod study;
+mod tracking;
