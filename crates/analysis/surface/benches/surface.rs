@@ -49,6 +49,15 @@ fn main() {
     let both = |a: &Mesh, to: &Surface| farthest(a, to, 1e-3);
     tell("farthest point, fine from coarse, to 0.001 mm", least(3, || both(&femur, &other)), 0.4);
     tell("farthest point, coarse from fine, to 0.001 mm", least(3, || both(&coarse, &surface)), 0.4);
+    let Ok(tibia) = mesh(Body::ProximalTibia.solid(), 7_500) else { return };
+    let tibia = Surface::new(&tibia);
+    for gap in [60.0, 45.0] {
+        let turn = nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::new(0.4, 0.1, 0.2));
+        let place = biplane_geometry::Pose::new(turn, nalgebra::Vector3::new(0.0, -gap, 0.0));
+        let found = other.apart(&tibia, &place);
+        let what = format!("distance of a femur and a tibia, {:.2} mm", found.distance_mm);
+        tell(&what, least(5, || other.apart(&tibia, &place).distance_mm), 0.020);
+    }
     println!(
         "at most {:.4} and {:.4} mm",
         both(&femur, &other).at_most_mm,

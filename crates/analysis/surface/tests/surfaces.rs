@@ -246,3 +246,66 @@ fn faults_of_a_mesh_are_found_where_they_are() {
     assert_eq!(pinched.pinched_vertices, [5]);
     assert!(pinched.open_edges.is_empty() && pinched.pieces == 2 && !pinched.is_closed_manifold());
 }
+
+#[test]
+fn two_surfaces_are_as_far_apart_as_all_their_pairs_say() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(31);
+    for round in 0..200 {
+        let (a, b) = (soup(30, &mut random), soup(25, &mut random));
+        let off = any(&mut random, if round % 2 == 0 { 30.0 } else { 8.0 });
+        let turn = nalgebra::UnitQuaternion::from_scaled_axis(any(&mut random, 3.0).coords);
+        let place = biplane_geometry::Pose::new(turn, off.coords);
+        let found = Surface::new(&a).apart(&Surface::new(&b), &place);
+        assert!(((found.at[0] - found.at[1]).norm() - found.distance_mm).abs() < 1e-9 || found.cross);
+        // Each triangle of the one finely sampled, from the other: from above, and near.
+        let moved =
+            Mesh::new(b.vertices().iter().map(|v| place.transform(v)).collect(), b.triangles().to_vec());
+        let moved = moved.unwrap();
+        let crossing = !Surface::new(&a).crossings_with(&Surface::new(&moved), 1).is_empty();
+        assert_eq!(found.cross, crossing, "round {round}");
+        // Where they do not cross, they are nearest at an edge of one: all edges in steps.
+        let edges = |from: &Mesh, to: &Mesh| {
+            let to = Surface::new(to);
+            let mut least = f64::INFINITY;
+            for t in from.triangles() {
+                for k in 0..3 {
+                    let [p, q] = [t[k], t[(k + 1) % 3]].map(|v| from.vertices()[v as usize]);
+                    for step in 0..=200 {
+                        let at = p + (q - p) * (f64::from(step) / 200.0);
+                        least = to.closest(&at).distance_mm.min(least);
+                    }
+                }
+            }
+            least
+        };
+        let least = edges(&a, &moved).min(edges(&moved, &a));
+        assert!(found.distance_mm <= least + 1e-9, "round {round}: {} {least}", found.distance_mm);
+        if !crossing {
+            assert!(least - found.distance_mm < 0.1, "round {round}: {} {least}", found.distance_mm);
+            // The points that are named lie on the surfaces.
+            assert!(Surface::new(&a).closest(&found.at[0]).distance_mm < 1e-9);
+            assert!(Surface::new(&moved).closest(&found.at[1]).distance_mm < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn balls_are_apart_and_deep_as_their_radii_say() {
+    use biplane_geometry::{Pose, Vector3};
+    let ball = |radius: f64| biplane_phantom::ball_mesh(radius, 8_000).unwrap();
+    let (a, b) = (ball(20.0), ball(10.0));
+    let (first, second) = (Surface::new(&a), Surface::new(&b));
+    for along in [Vector3::x(), Vector3::new(1.0, 2.0, -0.5).normalize()] {
+        for gap in [5.0, 0.1, -0.5, -3.0] {
+            let place = Pose::new(nalgebra::UnitQuaternion::from_scaled_axis(along), along * (30.0 + gap));
+            let found = first.apart(&second, &place);
+            let depth = first.depth(b.vertices().iter().map(|v| place.transform(v)));
+            if gap > 0.0 {
+                assert!((found.distance_mm - gap).abs() < 0.03, "{gap}: {}", found.distance_mm);
+                assert_eq!(depth, 0.0);
+            } else {
+                assert!(found.cross && (depth + gap).abs() < 0.05, "{gap}: {depth}");
+            }
+        }
+    }
+}
