@@ -17,7 +17,14 @@ const LAYERS: &[&[&str]] = &[
     &["biplane-geometry"],
     &["biplane-artifact"],
     &["biplane-stage"],
-    &["biplane-fluoroscope", "biplane-grey", "biplane-optimiser", "biplane-phantom", "biplane-spline"],
+    &[
+        "biplane-fluoroscope",
+        "biplane-grey",
+        "biplane-optimiser",
+        "biplane-phantom",
+        "biplane-spline",
+        "biplane-trial",
+    ],
     &["biplane-surface"],
     &["biplane-edge-bias", "biplane-edge-field", "biplane-outline"],
     &["biplane-objective", "biplane-silhouette"],
@@ -32,6 +39,7 @@ const LAYERS: &[&[&str]] = &[
         "biplane-label-surface",
         "biplane-point-model",
         "biplane-axes",
+        "biplane-kinematics",
         "biplane-contour",
         "biplane-optimisation",
     ],
@@ -44,7 +52,7 @@ const LAYERS: &[&[&str]] = &[
 const BUILD_TOOL: &str = "biplane-code-hash";
 
 /// Folders of the crates that take values and give values.
-const METHOD: [&str; 24] = [
+const METHOD: [&str; 26] = [
     "crates/foundation/geometry",
     "crates/foundation/artifact",
     "crates/analysis/distortion",
@@ -57,6 +65,8 @@ const METHOD: [&str; 24] = [
     "crates/analysis/label-surface",
     "crates/analysis/point-model",
     "crates/analysis/axes",
+    "crates/analysis/kinematics",
+    "crates/analysis/trial",
     "crates/analysis/spline",
     "crates/analysis/spots",
     "crates/matching/contour",

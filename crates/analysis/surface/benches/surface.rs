@@ -56,7 +56,7 @@ fn main() {
         let place = biplane_geometry::Pose::new(turn, nalgebra::Vector3::new(0.0, -gap, 0.0));
         let found = other.apart(&tibia, &place);
         let what = format!("distance of a femur and a tibia, {:.2} mm", found.distance_mm);
-        tell(&what, least(5, || other.apart(&tibia, &place).distance_mm), 0.020);
+        tell(&what, least(5, || other.apart(&tibia, &place).distance_mm), 0.002);
     }
     println!(
         "at most {:.4} and {:.4} mm",

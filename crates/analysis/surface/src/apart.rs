@@ -127,11 +127,17 @@ impl Surface {
         let rotation = place.rotation().to_rotation_matrix();
         let sizes = std::array::from_fn(|i| std::array::from_fn(|j| rotation.matrix()[(i, j)].abs()));
         let turned = Turned { move_b: place, sizes };
-        // Some pair to begin with: that of a vertex and what is nearest to it.
+        // Some pair to begin with: of vertices all over, the one with the nearest neighbour.
         let first = place.transform(&other.corners[0][0]);
         let start = self.closest(&first);
         let mut found = Apart { distance_mm: start.distance_mm, at: [start.at, first], cross: false };
-        let mut square = start.distance_mm * start.distance_mm;
+        for corners in other.corners.iter().step_by((other.corners.len() / TRIED).max(1)) {
+            let corner = place.transform(&corners[0]);
+            if let Some(nearer) = self.closest_within(&corner, found.distance_mm) {
+                found = Apart { distance_mm: nearer.distance_mm, at: [nearer.at, corner], cross: false };
+            }
+        }
+        let mut square = found.distance_mm * found.distance_mm;
         let whole = Span { low: [f32::NEG_INFINITY; 3], high: [f32::INFINITY; 3] };
         let everything = [[f64::NEG_INFINITY, f64::INFINITY]; 3];
         let mut stack: Vec<Pair> = vec![(0.0, 0, whole, 0, everything)];

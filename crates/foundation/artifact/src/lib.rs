@@ -13,6 +13,7 @@ mod curves;
 mod drawing;
 mod environment;
 mod frame;
+mod joint;
 mod matched;
 mod model;
 mod npy;
@@ -34,6 +35,7 @@ pub use environment::{
     Bead, BeadClick, BeadClicks, BeadList, Detector, Environment, SeenBead, TriangulatedBead, ViewEnvironment,
 };
 pub use frame::Frame;
+pub use joint::JointPose;
 pub use matched::{Alternative, Match, PoseRecord, StartsTried, Verdict, ViewFit};
 pub use model::{ModelMesh, Prediction, Start};
 pub use picture::Picture;
