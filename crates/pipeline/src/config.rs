@@ -19,6 +19,8 @@ use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::joints::section::JointSection;
+
 /// A text and where it stands in the file.
 pub type Located = toml::Spanned<String>;
 
@@ -57,6 +59,9 @@ pub struct PipelineFile {
     /// Bones in MRI, CT or maps of labels, one `[[slices]]` each; there may be none.
     #[serde(default)]
     pub slices: Vec<SlicesSection>,
+    /// Joints between bodies, one `[[joint]]` each; there may be none.
+    #[serde(default)]
+    pub joint: Vec<JointSection>,
     /// How edges are found in the pictures.
     #[serde(default)]
     pub segment: SegmentParams,
@@ -385,7 +390,7 @@ impl Default for DoctorSection {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputSection {
-    /// Folder of results: `poses.csv`, `overlays/`, `report.html`.
+    /// Folder of results: `poses.csv`, `kinematics.csv`, `overlays/`, `report.html`.
     #[schemars(with = "String")]
     pub folder: Located,
 }

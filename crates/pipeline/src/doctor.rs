@@ -75,7 +75,7 @@ pub fn doctor(study: Study, trial: Option<&str>) -> Result<Diagnosis, DoctorErro
     let context = Context::new();
     let (calibrated, _) = calibrate(&prepared, &store, &context, Way::Run(Vec::new()));
     let calibrated = calibrated?.unwrap_or_default();
-    let models = models::look::look(&prepared, &store, &context, &mut Vec::new());
+    let (models, _) = models::look::look(&prepared, &store, &context, &mut Vec::new());
     let steps = Steps {
         prepared: &prepared,
         calibrated: &calibrated,

@@ -101,7 +101,7 @@ pub fn edit(study: Study, wish: &Wish<'_>) -> Result<String, EditCommandError> {
     let context = Context::new();
     let calibrated = calibrate(&prepared, &store, &context, Way::Look(Vec::new())).0?.unwrap_or_default();
     let (study, calibrated) = (&prepared.study, &calibrated);
-    let models = &models::look::look(&prepared, &store, &context, &mut Vec::new());
+    let models = &models::look::look(&prepared, &store, &context, &mut Vec::new()).0;
     let steps = Steps { prepared: &prepared, calibrated, models, store: &store, context: &context };
     known("trial", wish.trial, study.trials.iter().map(|t| t.name.as_str()), |a, b| a == b)?;
     let of_trial = |job: &&Job| wish.trial.is_none_or(|name| study.trials[job.trial].name == name);

@@ -17,6 +17,7 @@ pub mod edit;
 pub mod edit_list;
 pub mod edits;
 pub mod init;
+pub mod joints;
 pub mod logging;
 pub mod look;
 pub mod made;

@@ -2,12 +2,14 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use biplane_artifact::{Contour, Curves, Match};
+use biplane_artifact::{Contour, Curves, Match, Verdict};
 use biplane_stage::{Context, Explanation, Hashed, Item, Store, StoreError, Stored};
 use rayon::prelude::*;
 
 use crate::calibrate::{CalibrateError, calibrate};
 use crate::edits::Drawn;
+use crate::joints::of_job;
+use crate::joints::run::Axes;
 use crate::models;
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps, TRACK, read_stored};
@@ -68,7 +70,7 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     let (calibrated, way) = calibrate(&prepared, &store, &context, Way::Look(Vec::new()));
     let calibrated = calibrated?.unwrap_or_default();
     let mut made = Vec::new();
-    let models = models::look::look(&prepared, &store, &context, &mut made);
+    let (models, axes) = models::look::look(&prepared, &store, &context, &mut made);
     let steps = Steps {
         prepared: &prepared,
         calibrated: &calibrated,
@@ -77,7 +79,7 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
         context: &context,
     };
     let mut frames: Vec<FrameLook> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
-    look_together(&steps, &mut frames);
+    look_together(&steps, &axes, &mut frames);
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");
     }
@@ -106,7 +108,7 @@ struct BodyLook {
 }
 
 /// Looks at what the frames of a trial do for each other, and at what is drawn of them.
-fn look_together(steps: &Steps<'_>, frames: &mut [FrameLook]) {
+fn look_together(steps: &Steps<'_>, axes: &Axes, frames: &mut [FrameLook]) {
     let prepared = steps.prepared;
     let all = frames.iter().all(|f| f.bodies.iter().all(|b| b.matched.is_some()) || f.fails);
     let looks: Mutex<Vec<(usize, Look)>> = Mutex::default();
@@ -174,6 +176,15 @@ fn look_together(steps: &Steps<'_>, frames: &mut [FrameLook]) {
                 None => matches.extend(body.matched.as_ref().map(Stored::promise)),
             }
         }
+        let verdicts = |place: usize| final_verdict(steps, &tracked, number, place, &frame.bodies);
+        let joints: Vec<Look> = of_job(prepared, job)
+            .filter(|(.., places)| !all || places.iter().all(|p| verdicts(*p) != Some(Verdict::Failed)))
+            .map(|(_, joint, [a, b])| {
+                let ready = all && matches.len() == job.bodies.len();
+                steps.look_at_joint(job, joint, axes, ready.then(|| [matches[a], matches[b]]))
+            })
+            .collect();
+        frame.looks.extend(joints);
         for slot in 0..job.pictures.len() {
             let item = steps.item(job, steps.view(job, slot).1);
             // Where it is not known yet what frames do for each other, those that needed nothing most likely need nothing again.
@@ -183,6 +194,21 @@ fn look_together(steps: &Steps<'_>, frames: &mut [FrameLook]) {
             frame.looks.push(after(steps, OVERLAY, &item, frame.fails, ready, explain));
         }
     });
+}
+
+/// The verdict of a body's final match, where it is there.
+fn final_verdict(
+    steps: &Steps<'_>,
+    tracked: &Tracked,
+    job: usize,
+    place: usize,
+    bodies: &[BodyLook],
+) -> Option<Verdict> {
+    if let Some(found) = tracked.changed.get(&(job, place)) {
+        return Some(found.verdict);
+    }
+    let own = read_stored(steps.store, bodies.get(place)?.matched.as_ref()?).ok()?;
+    Some(own.verdict)
 }
 
 fn look_at(steps: &Steps<'_>, job: &Job) -> FrameLook {

@@ -6,6 +6,7 @@ use biplane_artifact::{AxesSource, Match, Side, SurfaceReport, Verdict};
 use biplane_geometry::Pose;
 
 use crate::calibrate::Calibrated;
+use crate::joints::JointOutcome;
 use crate::tracking::Bridge;
 
 /// Where a start pose came from.
@@ -214,6 +215,8 @@ pub struct Outcome {
     pub slices: Vec<SlicesOutcome>,
     /// In the order of the study.
     pub models: Vec<ModelOutcome>,
+    /// In the order of the study.
+    pub joints: Vec<JointOutcome>,
     /// Worth a look, in order.
     pub warnings: Vec<String>,
     /// In order.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 17] = [
+const ORDER: [&str; 18] = [
     "study",
     "fluoroscope",
     "plate",
@@ -16,6 +16,7 @@ const ORDER: [&str; 17] = [
     "body",
     "trial",
     "slices",
+    "joint",
     "spots",
     "distortion",
     "environment",

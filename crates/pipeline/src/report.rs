@@ -456,6 +456,7 @@ mod tests {
                 reference: None,
             }],
             slices: vec![],
+            joints: vec![],
             trials: vec![Trial {
                 name: "lunge".into(),
                 frames: vec![(0, "a".into()), (1, "b".into())],

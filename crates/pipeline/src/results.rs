@@ -107,7 +107,7 @@ fn header(views: &[&str]) -> Vec<String> {
 }
 
 /// A decimal number without the sign that a rounded -0 would keep.
-fn fixed(value: f64, digits: usize) -> String {
+pub(crate) fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     if text.starts_with('-') && text.bytes().all(|c| b"-0.".contains(&c)) {
         text[1..].to_owned()

@@ -15,6 +15,8 @@ use rayon::prelude::*;
 use crate::calibrate::{CalibrateError, Calibrated, calibrate};
 use crate::diagnostics::slashes;
 use crate::edits::Drawn;
+use crate::joints;
+use crate::joints::run::JointsRun;
 use crate::logging::Progress;
 use crate::made::Made;
 use crate::models;
@@ -24,7 +26,7 @@ use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
 use crate::slices;
 use crate::steps::{
-    AXES, CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, LABEL_SURFACE, LOFT, MATCH, MODEL,
+    AXES, CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, JOINT, LABEL_SURFACE, LOFT, MATCH, MODEL,
     OVERLAY, SEGMENT, SLICES, SPOTS, STEPS, Steps, TRACK,
 };
 use crate::study::{Plate, PlateSource, Study, SurfaceSource, ViewSource};
@@ -57,6 +59,9 @@ pub enum RunError {
     /// The page cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// The tables of joints cannot be written.
+    #[error(transparent)]
+    Joints(#[from] joints::run::WriteError),
     /// No threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -173,18 +178,37 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     if !stopped {
         stopped = pool.install(|| together(&steps_of_frames, &mut frames)).is_none();
     }
+    let mut jointed = JointsRun::default();
+    if !stopped && !prepared.study.joints.is_empty() {
+        let own = |frame: &Option<Frame>| {
+            frame.iter().flat_map(|f| &f.bodies).map(|body| body.matched.clone()).collect::<Vec<_>>()
+        };
+        let matches: Vec<_> = frames.iter().map(own).collect();
+        match pool.install(|| joints::run::run(&steps_of_frames, &modelled.axes, &matches)) {
+            Some(found) => jointed = found,
+            None => stopped = true,
+        }
+    }
+    count(std::mem::take(&mut jointed.done), &mut steps, &mut warnings);
+    failed(&jointed.failures, &mut steps);
+    jointed.warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
+    warnings.append(&mut jointed.warnings);
     let written = calibrated.write(&prepared.study.output, &prepared.study.views);
     let written = written.map_err(|(place, source)| RunError::Write {
         path: slashes(&prepared.study.output.join(place)),
         source,
     })?;
-    let of_frames = frames.iter().flatten().flat_map(|f| f.made.iter().cloned());
-    let made = Made::of(of_frames.chain(written).chain(sliced.made).chain(modelled.made));
+    let of_frames: Vec<_> = frames.iter().flatten().flat_map(|f| f.made.iter().cloned()).collect();
     let mut outcome = gather(frames.into_iter().flatten(), steps, warnings, &mut provenance);
     outcome.calibration = std::mem::take(&mut calibrated);
     outcome.slices = sliced.outcomes;
     outcome.models = modelled.outcomes;
     outcome.failures.splice(0..0, sliced.failures.into_iter().chain(modelled.failures));
+    outcome.failures.append(&mut jointed.failures);
+    outcome.joints = jointed.outcomes;
+    let plots = if stopped { Vec::new() } else { joints::run::write(&prepared.study, &mut outcome)? };
+    let made = of_frames.into_iter().chain(written).chain(sliced.made).chain(modelled.made).chain(plots);
+    let made = Made::of(made);
     outcome.edits.iter_mut().zip(sliced.edits).for_each(|(sum, part)| *sum += part);
     let (study, jobs) = (prepared.study, prepared.jobs.len());
     let hidden = study.hidden();
@@ -710,6 +734,9 @@ fn provenance(prepared: &Prepared) -> Provenance {
     parameters.push((EDIT.to_owned(), text(toml::to_string(&study.edit))));
     parameters.push((MATCH.to_owned(), text(toml::to_string(&study.matching))));
     parameters.push((TRACK.to_owned(), text(toml::to_string(&study.tracking))));
+    for joint in &study.joints {
+        parameters.push((format!("{JOINT} {}", joint.name), text(toml::to_string(joint))));
+    }
     parameters.push((CONTOUR.to_owned(), text(toml::to_string(&study.contour))));
     Provenance { parameters, inputs }
 }

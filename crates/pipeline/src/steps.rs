@@ -57,10 +57,12 @@ pub const MATCH: &str = "match";
 pub const TRACK: &str = "track";
 /// Step of the curves that are outlines.
 pub const CONTOUR: &str = "contour";
+/// Step of joints.
+pub const JOINT: &str = "joint";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 16] = [
+pub const STEPS: [&str; 17] = [
     SPOTS,
     DISTORTION,
     ENVIRONMENT,
@@ -76,6 +78,7 @@ pub const STEPS: [&str; 16] = [
     MATCH,
     TRACK,
     CONTOUR,
+    JOINT,
     OVERLAY,
 ];
 

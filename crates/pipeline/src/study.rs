@@ -24,6 +24,7 @@ use crate::config::{
     Origin, PairBy, PipelineFile, PlateSection, SlicesSection, StatedUncertainty, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
+use crate::joints::{StudyJoint, section};
 use crate::models::LANDMARKS;
 use crate::slices::SLICES;
 
@@ -48,6 +49,8 @@ pub struct Study {
     pub trials: Vec<Trial>,
     /// Bones in volumes, in the order of the file.
     pub slices: Vec<SlicedBone>,
+    /// Joints, in the order of the file.
+    pub joints: Vec<StudyJoint>,
     /// The plate of the calibration pictures, if there is one.
     pub plate: Option<Plate>,
     /// The frame of beads of the calibration pictures, if there is one.
@@ -427,6 +430,7 @@ impl Check {
             body,
             trial,
             slices,
+            joint,
             segment,
             edit,
             matching,
@@ -472,6 +476,15 @@ impl Check {
         }
         let trials = trial.into_iter().map(|t| self.trial(t, &views, &bodies)).collect();
         let slices = slices.into_iter().map(|s| self.sliced(s)).collect();
+        self.names("joint", joint.iter().map(|j| &j.name));
+        for joint in &joint {
+            // A joint is an item of a frame beside its bodies.
+            if bodies.iter().any(|b| b.name == *joint.name.get_ref()) {
+                let text = format!("joint `{}` has the name of a body", joint.name.get_ref());
+                self.list.push(Problem::at(joint.name.span(), text).help("give the joint a name of its own"));
+            }
+        }
+        let joints = joint.into_iter().filter_map(|j| section::joint(j, &bodies, &mut self.list)).collect();
         let folder = self.root.join(output.folder.get_ref());
         if [self.root.clone(), self.root.join("edits"), self.root.join(".biplane")].contains(&tidy(&folder)) {
             self.list.push(
@@ -486,6 +499,7 @@ impl Check {
             bodies,
             trials,
             slices,
+            joints,
             plate,
             beads,
             spots,

@@ -1,6 +1,7 @@
 //! What would become of the slices of all bones and the models of all bodies, and the models that are there.
 
-use biplane_stage::{Context, Store};
+use biplane_artifact::BodyAxes;
+use biplane_stage::{Context, Hashed, Store};
 
 use super::BodyModel;
 use super::walk::walk;
@@ -22,13 +23,11 @@ pub fn models(prepared: &Prepared, store: &Store, context: &Context) -> Vec<Opti
     bodies.map(|body| walk(prepared, body, &sliced, store, context, run()).0.ok()?.model).collect()
 }
 
-/// Looks at bones and bodies in the order of the study, and gives each body's model where it is in the store.
-pub fn look(
-    prepared: &Prepared,
-    store: &Store,
-    context: &Context,
-    looks: &mut Vec<Look>,
-) -> Vec<Option<BodyModel>> {
+/// What of a body is in the store: its model and its axes.
+pub type InStore = (Vec<Option<BodyModel>>, Vec<Option<Hashed<BodyAxes>>>);
+
+/// Looks at bones and bodies in the order of the study, and gives each body's model and axes where they are in the store.
+pub fn look(prepared: &Prepared, store: &Store, context: &Context, looks: &mut Vec<Look>) -> InStore {
     let study = &prepared.study;
     let fails = |step, name: &str, error: &dyn std::fmt::Display| Look {
         step,
@@ -46,19 +45,21 @@ pub fn look(
             Sliced::default()
         }));
     }
-    let mut models = Vec::new();
+    let (mut models, mut axes) = (Vec::new(), Vec::new());
     for (number, body) in study.bodies.iter().enumerate() {
         let (found, walk) = walk(prepared, number, &sliced, store, context, Way::Look(Vec::new()));
         if let Way::Look(own) = walk.way {
             looks.extend(own);
         }
-        models.push(match found {
-            Ok(found) => found.model,
+        let (model, own) = match found {
+            Ok(found) => (found.model, found.axes),
             Err(error) => {
                 looks.push(fails(MODEL, &body.name, &error));
-                None
+                (None, None)
             }
-        });
+        };
+        models.push(model);
+        axes.push(own);
     }
-    models
+    (models, axes)
 }

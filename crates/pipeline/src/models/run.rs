@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use biplane_artifact::{Artifact, BoneSurface, Content, Picture};
-use biplane_stage::{Context, How, Store};
+use biplane_artifact::{Artifact, BodyAxes, BoneSurface, Content, Picture};
+use biplane_stage::{Context, Hashed, How, Store};
 use rayon::prelude::*;
 
 use super::tables::{README, axes_csv, stl};
@@ -24,6 +24,8 @@ use crate::walk::Way;
 pub struct ModelsRun {
     /// What is matched, one a body of the study; `None` where it could not be made.
     pub models: Vec<Option<BodyModel>>,
+    /// Their axes, where they have such.
+    pub axes: Vec<Option<Hashed<BodyAxes>>>,
     /// In the order of the study.
     pub outcomes: Vec<ModelOutcome>,
     /// Step and how it was done.
@@ -53,8 +55,9 @@ pub fn run(prepared: &Prepared, sliced: &[Sliced], store: &Store, context: &Cont
         .collect();
     let mut all = ModelsRun::default();
     for body in bodies {
-        let ModelsRun { models, outcomes, done, failures, warnings, inputs, made } = body?;
+        let ModelsRun { models, axes, outcomes, done, failures, warnings, inputs, made } = body?;
         all.models.extend(models);
+        all.axes.extend(axes);
         all.outcomes.extend(outcomes);
         all.done.extend(done);
         all.failures.extend(failures);
@@ -122,6 +125,7 @@ fn of_body(
     }
     all.warnings.iter_mut().for_each(|w| *w = study.shorten(w));
     all.models.push(found.model);
+    all.axes.push(found.axes);
     all.outcomes.push(outcome);
     Some(all)
 }
