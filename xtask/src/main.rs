@@ -1,7 +1,9 @@
 //! `cargo xtask COMMAND`: thin, calls the crates.
 //!
 //! `cargo xtask run pipeline.toml` is `biplane run pipeline.toml`, and every other command of the program passes through
-//! too. What only the project itself needs is here: `validate`, `accuracy` and `starts`.
+//! too. What only the project itself needs is here: `validate`, `accuracy`, `kinematics` and `starts`.
+
+mod kinematics;
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -56,6 +58,26 @@ enum Task {
         #[arg(long)]
         limit_mm: f64,
         /// Largest angle in any frame, degrees.
+        #[arg(long)]
+        limit_deg: f64,
+    },
+    /// Hold a study's results/kinematics.csv against what known poses of a joint's bodies give; fails beyond the limits.
+    Kinematics {
+        /// The study.
+        pipeline: PathBuf,
+        /// The joint.
+        #[arg(long)]
+        joint: String,
+        /// CSV: frame, then the 16 numbers of world_from_model of the proximal body.
+        #[arg(long)]
+        proximal: PathBuf,
+        /// The same of the distal body.
+        #[arg(long)]
+        distal: PathBuf,
+        /// Largest error of a translation in any frame, mm.
+        #[arg(long)]
+        limit_mm: f64,
+        /// Largest error of an angle in any frame, degrees.
         #[arg(long)]
         limit_deg: f64,
     },
@@ -127,7 +149,7 @@ fn section_names() -> clap::builder::PossibleValuesParser {
 
 fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let own = ["validate", "accuracy", "relative", "picture", "starts"];
+    let own = ["validate", "accuracy", "kinematics", "relative", "picture", "starts"];
     if !arguments.get(1).is_some_and(|a| own.iter().any(|o| a == o)) {
         let passed = arguments.into_iter().skip(1);
         return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
@@ -136,6 +158,9 @@ fn main() -> ExitCode {
         Task::Validate { quick, only, seed } => validate(quick, &only, seed),
         Task::Accuracy { pipeline, body, reference, limit_mm, limit_deg } => {
             accuracy(&pipeline, &body, &reference, limit_mm, limit_deg)
+        }
+        Task::Kinematics { pipeline, joint, proximal, distal, limit_mm, limit_deg } => {
+            kinematics::kinematics(&pipeline, &joint, [&proximal, &distal], (limit_mm, limit_deg))
         }
         Task::Relative { pipeline, body, seen_from, reference, frames } => {
             relative(&pipeline, &body, &seen_from, &reference, &frames)
