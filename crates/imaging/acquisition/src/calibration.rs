@@ -24,7 +24,7 @@ pub(crate) use columns::{Lengths, Row, Table, fields, lines};
 pub(crate) use distortion::is_distortion_csv;
 pub use distortion::{read_distortion_csv, write_distortion_csv};
 pub use four_points::write_four_points;
-pub use jointtrack::{write_jointtrack, write_jointtrack_biplane};
+pub use jointtrack::{right_up_back_of, write_jointtrack, write_jointtrack_biplane};
 pub use mayacam::{read_mayacam2, write_mayacam2};
 pub use mayacam1::write_mayacam1;
 pub use plane::{read_plane_json, write_plane_json};

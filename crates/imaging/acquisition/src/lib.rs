@@ -16,4 +16,5 @@ pub mod landmarks;
 pub mod meshes;
 mod places;
 pub mod plates;
+pub mod poses;
 pub mod volumes;

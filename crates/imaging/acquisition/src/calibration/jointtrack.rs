@@ -154,6 +154,12 @@ fn right_up_back(camera: &Camera) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * camera.axes
 }
 
+/// Right, up and towards the source, as rows, of a view whose picture is as seen from the source; none of a mirrored one.
+pub fn right_up_back_of(calibration: &biplane_artifact::Calibration) -> Option<Matrix3<f64>> {
+    let camera = Camera::of(calibration);
+    (!camera.is_mirrored()).then(|| right_up_back(&camera))
+}
+
 /// The four numbers of a view, on a line each.
 fn four(
     format: &'static str,
