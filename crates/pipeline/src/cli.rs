@@ -24,6 +24,8 @@ use crate::diagnostics::slashes;
 use crate::doctor::{DoctorError, doctor};
 use crate::edit::{EditCommandError, Wish, edit};
 use crate::edit_list::{EditListError, list};
+use crate::exchange::{ExchangeError, Foreign, difference, import};
+use crate::exports::TraLayout;
 use crate::logging::{self, LogFormat};
 use crate::look::{Fate, LookError, counts, look};
 use crate::models::MODELS;
@@ -98,6 +100,31 @@ struct Pipeline {
     /// The pipeline file, or the folder it lies in.
     #[arg(default_value = "pipeline.toml", value_name = "PIPELINE")]
     file: PathBuf,
+}
+
+/// Poses of another program, and what its file does not say of itself.
+#[derive(Debug, clap::Args)]
+struct ForeignArguments {
+    /// The file.
+    file: PathBuf,
+    /// The study.
+    #[arg(long, default_value = "pipeline.toml", value_name = "FILE")]
+    pipeline: PathBuf,
+    /// The trial whose frames it has.
+    #[arg(long, value_name = "NAME")]
+    trial: Option<String>,
+    /// A body in it; more than one in their order.
+    #[arg(long = "body", value_name = "NAME")]
+    bodies: Vec<String>,
+    /// JointTrack: the fluoroscope whose camera it is in the frame of.
+    #[arg(long, value_name = "NAME")]
+    view: Option<String>,
+    /// Autoscoper: how a pose is written, where the numbers do not tell.
+    #[arg(long, value_enum)]
+    layout: Option<TraLayout>,
+    /// Autoscoper: lengths are in centimetres.
+    #[arg(long)]
+    centimetres: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -278,6 +305,30 @@ The store, .biplane/ beside the pipeline file, keeps what was computed; deleting
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Make a table of start poses from another program's file: Autoscoper (.tra), XMALab, JointTrack (.jts, .jtak, .jtap).
+    #[command(after_help = "Examples:
+  biplane import old/femur.jts --trial lunge --body femur --output starts.csv
+  biplane import lunge.tra --body femur --body tibia --layout matrix-rows     prints the table
+
+Its frames are those of the trial, from the first. Name the table in the pipeline file: starts = \"starts.csv\".")]
+    Import {
+        #[command(flatten)]
+        foreign: ForeignArguments,
+        /// Where to write the table; an existing file is not overwritten. Not given, it is printed.
+        #[arg(long, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
+    /// Say how far results lie from the poses of another file: median, 95 %, worst, and the frames that are farthest off.
+    #[command(after_help = "Examples:
+  biplane difference old/poses.csv
+  biplane difference femur.jts --trial lunge --body femur")]
+    Difference {
+        #[command(flatten)]
+        foreign: ForeignArguments,
+        /// Poses in place of those of results/poses.csv.
+        #[arg(long, value_name = "FILE")]
+        of: Option<PathBuf>,
+    },
     /// Write the frames without distortion, for other programs; a run needs no such pictures.
     #[command(after_help = "Examples:
   biplane correct --output corrected                every frame, and a mask of what is valid
@@ -337,6 +388,22 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 }
 
 type Ended = Result<End, (End, String)>;
+
+impl ForeignArguments {
+    fn taken(self) -> Result<(Study, PathBuf, Foreign), (End, String)> {
+        let Self { file, pipeline, trial, bodies, view, layout, centimetres } = self;
+        Ok((load(&pipeline)?, file, Foreign { trial, bodies, view, layout, centimetres }))
+    }
+}
+
+fn exchange_failed(error: ExchangeError) -> (End, String) {
+    let end = match &error {
+        ExchangeError::Store(_) => End::Internal,
+        ExchangeError::Asked(_) => End::BadConfiguration,
+        _ => End::BadInput,
+    };
+    (end, error.to_string())
+}
 
 fn obey(command: Command) -> Ended {
     match command {
@@ -399,6 +466,30 @@ fn obey(command: Command) -> Ended {
             })?;
             print(&text);
             Ok(if well { End::Good } else { End::SomeFailed })
+        }
+        Command::Import { foreign, output } => {
+            let (study, path, wish) = foreign.taken()?;
+            let text = import(study, &path, &wish).map_err(exchange_failed)?;
+            match output {
+                None => print(&text),
+                Some(output) => {
+                    let written = std::fs::File::create_new(&output).and_then(|mut file| {
+                        use std::io::Write;
+                        file.write_all(text.as_bytes())
+                    });
+                    written.map_err(|e| {
+                        (End::BadInput, format!("{}: {e}; nothing was overwritten", output.display()))
+                    })?;
+                    let poses = text.lines().count().saturating_sub(1);
+                    print(&format!("{}: {poses} poses\n", output.display()));
+                }
+            }
+            Ok(End::Good)
+        }
+        Command::Difference { foreign, of } => {
+            let (study, path, wish) = foreign.taken()?;
+            print(&difference(study, &path, of.as_deref(), &wish).map_err(exchange_failed)?);
+            Ok(End::Good)
         }
         Command::Doctor { pipeline, trial } => {
             let found = doctor(load(&pipeline.file)?, trial.as_deref()).map_err(|error| {

@@ -19,6 +19,7 @@ use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::exports::ExportSection;
 use crate::joints::section::JointSection;
 
 /// A text and where it stands in the file.
@@ -83,6 +84,9 @@ pub struct PipelineFile {
     /// Where results go.
     #[serde(default)]
     pub output: OutputSection,
+    /// Results for other programs.
+    #[serde(default)]
+    pub export: ExportSection,
 }
 
 /// `[study]`

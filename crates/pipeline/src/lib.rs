@@ -16,6 +16,8 @@ pub mod drawings;
 pub mod edit;
 pub mod edit_list;
 pub mod edits;
+pub mod exchange;
+pub mod exports;
 pub mod init;
 pub mod joints;
 pub mod logging;

@@ -72,7 +72,11 @@ impl Made {
 fn take_away(results: &Path, name: &str, hash: &str) -> std::io::Result<bool> {
     // The list is a file that anyone can edit: it must not reach out of the folder of overlays.
     let inside = Path::new(name).components().all(|c| matches!(c, Component::Normal(_)));
-    if !inside || !["overlays/", "calibration/", "slices/"].iter().any(|folder| name.starts_with(folder)) {
+    if !inside
+        || !["overlays/", "calibration/", "slices/", "kinematics/", "exports/"]
+            .iter()
+            .any(|folder| name.starts_with(folder))
+    {
         return Ok(false);
     }
     let path = results.join(name);

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "study",
     "fluoroscope",
     "plate",
@@ -27,6 +27,7 @@ const ORDER: [&str; 18] = [
     "contour",
     "doctor",
     "output",
+    "export",
 ];
 
 /// The JSON Schema, indented, with a newline at its end.

@@ -478,6 +478,7 @@ mod tests {
             tracking: Default::default(),
             contour: Default::default(),
             output: "/study/results".into(),
+            export: Default::default(),
         }
     }
 

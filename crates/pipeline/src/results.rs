@@ -76,6 +76,15 @@ pub fn distortion_csv(table: &DistortionTable) -> String {
 
 /// Columns of a pose.
 const POSE: [&str; 7] = ["tx_mm", "ty_mm", "tz_mm", "qw", "qx", "qy", "qz"];
+/// Columns of the thesis's six numbers, about the model's origin.
+const THESIS: [&str; 6] = [
+    "thesis_alpha_deg",
+    "thesis_beta_deg",
+    "thesis_gamma_deg",
+    "thesis_tx_mm",
+    "thesis_ty_mm",
+    "thesis_tz_mm",
+];
 /// Columns of standard deviations: of the pose, and what of them the calibration brings.
 const SIGMAS: [&str; 4] = ["sigma_t_mm", "sigma_r_deg", "calibration_sigma_t_mm", "calibration_sigma_r_deg"];
 /// Columns of half-widths of intervals.
@@ -103,6 +112,8 @@ fn header(views: &[&str]) -> Vec<String> {
     }
     names.extend(SEARCHED.map(str::to_owned));
     names.extend(POSE.map(|what| format!("alternative_{what}")));
+    names.extend((0..16).map(|k| format!("m{}{}", k / 4, k % 4)));
+    names.extend(THESIS.map(str::to_owned));
     names
 }
 
@@ -181,6 +192,15 @@ fn row(study: &Study, frame: &FrameOutcome, body: &BodyOutcome) -> Vec<String> {
         None => {
             cells.extend(empty(SIGMAS.len() + INTERVALS.len() + COVARIANCES + SEARCHED.len() + POSE.len()));
         }
+    }
+    match pose.map(Pose::from) {
+        Some(pose) => {
+            cells.extend(pose.matrix().transpose().iter().map(|v| fixed(*v, 9)));
+            let (angles, translation) = pose.to_thesis(biplane_geometry::Vector3::zeros());
+            cells.extend(angles.map(|a| fixed(a.to_degrees(), 7)));
+            cells.extend(translation.iter().map(|v| fixed(*v, 6)));
+        }
+        None => cells.extend(empty(16 + THESIS.len())),
     }
     cells
 }

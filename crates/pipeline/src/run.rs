@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use crate::calibrate::{CalibrateError, Calibrated, calibrate};
 use crate::diagnostics::slashes;
 use crate::edits::Drawn;
+use crate::exports;
 use crate::joints;
 use crate::joints::run::JointsRun;
 use crate::logging::Progress;
@@ -62,6 +63,9 @@ pub enum RunError {
     /// The tables of joints cannot be written.
     #[error(transparent)]
     Joints(#[from] joints::run::WriteError),
+    /// Files for other programs cannot be written.
+    #[error(transparent)]
+    Exports(#[from] exports::ExportError),
     /// No threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -207,6 +211,12 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     outcome.failures.append(&mut jointed.failures);
     outcome.joints = jointed.outcomes;
     let plots = if stopped { Vec::new() } else { joints::run::write(&prepared.study, &mut outcome)? };
+    let exported = if stopped {
+        Vec::new()
+    } else {
+        exports::write(&prepared.study, &outcome, &outcome.calibration.calibrations)?
+    };
+    let plots = plots.into_iter().chain(exported);
     let made = of_frames.into_iter().chain(written).chain(sliced.made).chain(modelled.made).chain(plots);
     let made = Made::of(made);
     outcome.edits.iter_mut().zip(sliced.edits).for_each(|(sum, part)| *sum += part);

@@ -24,6 +24,7 @@ use crate::config::{
     Origin, PairBy, PipelineFile, PlateSection, SlicesSection, StatedUncertainty, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
+use crate::exports::ExportSection;
 use crate::joints::{StudyJoint, section};
 use crate::models::LANDMARKS;
 use crate::slices::SLICES;
@@ -75,6 +76,8 @@ pub struct Study {
     pub doctor: DoctorSection,
     /// Folder of results.
     pub output: PathBuf,
+    /// What is written for other programs.
+    pub export: ExportSection,
 }
 
 /// One fluoroscope.
@@ -406,6 +409,15 @@ impl Study {
         }
         check.list.extend(crate::slices::section::faults(&file.slices, &text));
         check.list.extend(crate::models::section::faults(&file.body, &file.slices, &text));
+        if let Some(view) = file.export.view.as_ref()
+            && !file.fluoroscope.0.iter().any(|(name, _)| name.get_ref() == view)
+        {
+            let names: Vec<&str> =
+                file.fluoroscope.0.iter().map(|(name, _)| name.get_ref().as_str()).collect();
+            let text_of =
+                format!("[export] there is no fluoroscope `{view}`: {}", meant(view, names.iter().copied()));
+            check.list.push(parameter(&text, "export", Some("view"), &text_of));
+        }
         let study = check.study(file);
         if check.list.is_empty() { Ok(study) } else { Err(wrong(check.list)) }
     }
@@ -438,6 +450,7 @@ impl Check {
             contour,
             doctor,
             output,
+            export,
         } = file;
         let name = study.name;
         self.names("fluoroscope", fluoroscope.0.iter().map(|(n, _)| n));
@@ -512,6 +525,7 @@ impl Check {
             contour,
             doctor,
             output: folder,
+            export,
         }
     }
 

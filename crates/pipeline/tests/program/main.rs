@@ -4,6 +4,7 @@
 mod calibration;
 mod compare;
 mod edits;
+mod exports;
 mod messages;
 mod models;
 mod scene;
