@@ -40,6 +40,7 @@ const LAYERS: &[&[&str]] = &[
         "biplane-point-model",
         "biplane-axes",
         "biplane-kinematics",
+        "biplane-trial",
         "biplane-contour",
         "biplane-optimisation",
     ],

@@ -25,7 +25,7 @@ use crate::doctor::{DoctorError, doctor};
 use crate::edit::{EditCommandError, Wish, edit};
 use crate::edit_list::{EditListError, list};
 use crate::exchange::{ExchangeError, Foreign, difference, import};
-use crate::exports::TraLayout;
+use crate::exports::{EXPORTS, TraLayout};
 use crate::logging::{self, LogFormat};
 use crate::look::{Fate, LookError, counts, look};
 use crate::models::MODELS;
@@ -33,6 +33,7 @@ use crate::outcome::{ModelOutcome, Outcome, SlicesOutcome};
 use crate::run::{RunError, run};
 use crate::slices::SLICES;
 use crate::slices::command::{SliceWish, edit_slices};
+use crate::smoothing::effect;
 use crate::study::{Study, StudyError};
 use crate::tables::{PoseTable, TableError};
 use crate::{init, reference, summary};
@@ -839,6 +840,7 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
     }
     text += &slices_lines(study, outcome);
     text += &models_lines(study, outcome);
+    text.extend(outcome.smoothed.iter().map(|of| effect(study, of) + "\n"));
     text += &to_look_at(study, outcome);
     let rows = good + doubtful + ambiguous + failed;
     if ambiguous > 0 {
@@ -857,6 +859,15 @@ fn closing(study: &Study, outcome: &Outcome) -> String {
         slashes(shown.as_deref().unwrap_or(&path))
     };
     text += &format!("\nPoses    {}\n", at("poses.csv"));
+    if !outcome.smoothed.is_empty() {
+        text += &format!("Smoothed {}\n", at("poses_smoothed.csv"));
+    }
+    if !outcome.joints.is_empty() {
+        text += &format!("Joints   {}\n", at("kinematics.csv"));
+    }
+    if !study.export.formats.is_empty() {
+        text += &format!("Exports  {}\n", at(EXPORTS));
+    }
     if !outcome.calibration.drawings.is_empty() {
         text += &format!("Calibration {}\n", at("calibration"));
     }

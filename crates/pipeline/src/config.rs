@@ -15,6 +15,7 @@ use biplane_point_model::ModelParams;
 use biplane_segmentation::{SegmentParams, TraceParams};
 use biplane_slices::SlicesParams;
 use biplane_spots::{Look, SpotSettings};
+use biplane_trial::SmoothSettings;
 use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -81,6 +82,9 @@ pub struct PipelineFile {
     /// Limits of `biplane doctor`.
     #[serde(default)]
     pub doctor: DoctorSection,
+    /// Smoothing of whole trials, off unless asked for.
+    #[serde(default)]
+    pub smooth: SmoothSettings,
     /// Where results go.
     #[serde(default)]
     pub output: OutputSection,

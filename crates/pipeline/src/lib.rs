@@ -32,6 +32,7 @@ pub mod report;
 pub mod results;
 pub mod run;
 pub mod slices;
+pub mod smoothing;
 pub mod sources;
 pub mod starts;
 pub mod steps;

@@ -12,6 +12,7 @@ use crate::joints::of_job;
 use crate::joints::run::Axes;
 use crate::models;
 use crate::prepare::{InputErrors, Job, Prepared};
+use crate::smoothing;
 use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps, TRACK, read_stored};
 use crate::study::Study;
 use crate::summary::aligned;
@@ -159,6 +160,16 @@ fn look_together(steps: &Steps<'_>, axes: &Axes, frames: &mut [FrameLook]) {
     for (number, look) in looks {
         frames[number].looks.push(look);
     }
+    let smooth = if prepared.study.smoothing.enabled {
+        smoothing::look(steps, all, |job, place| {
+            let verdict = final_verdict(steps, &tracked, job, place, &frames[job].bodies)?;
+            let own = || frames[job].bodies.get(place)?.matched.as_ref().map(Stored::promise);
+            let promise = tracked.changed.get(&(job, place)).map(Hashed::promise).or_else(own)?;
+            Some((promise, verdict))
+        })
+    } else {
+        Vec::new()
+    };
     frames.par_iter_mut().enumerate().for_each(|(number, frame)| {
         let job = &prepared.jobs[number];
         let mut matches = Vec::new();
@@ -194,6 +205,9 @@ fn look_together(steps: &Steps<'_>, axes: &Axes, frames: &mut [FrameLook]) {
             frame.looks.push(after(steps, OVERLAY, &item, frame.fails, ready, explain));
         }
     });
+    if let Some(last) = frames.last_mut() {
+        last.looks.extend(smooth);
+    }
 }
 
 /// The verdict of a body's final match, where it is there.

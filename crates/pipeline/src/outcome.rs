@@ -7,6 +7,7 @@ use biplane_geometry::Pose;
 
 use crate::calibrate::Calibrated;
 use crate::joints::JointOutcome;
+use crate::smoothing::SmoothOutcome;
 use crate::tracking::Bridge;
 
 /// Where a start pose came from.
@@ -217,6 +218,8 @@ pub struct Outcome {
     pub models: Vec<ModelOutcome>,
     /// In the order of the study.
     pub joints: Vec<JointOutcome>,
+    /// In the order of trials and bodies; none where trials are not smoothed.
+    pub smoothed: Vec<SmoothOutcome>,
     /// Worth a look, in order.
     pub warnings: Vec<String>,
     /// In order.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use crate::config::PipelineFile;
 
 /// The tables in the order of a pipeline file: a schema has none.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 20] = [
     "study",
     "fluoroscope",
     "plate",
@@ -24,6 +24,7 @@ const ORDER: [&str; 19] = [
     "edit",
     "match",
     "track",
+    "smooth",
     "contour",
     "doctor",
     "output",

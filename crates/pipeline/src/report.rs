@@ -476,6 +476,7 @@ mod tests {
             edit: Default::default(),
             matching: Default::default(),
             tracking: Default::default(),
+            smoothing: Default::default(),
             contour: Default::default(),
             output: "/study/results".into(),
             export: Default::default(),

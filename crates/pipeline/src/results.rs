@@ -75,7 +75,7 @@ pub fn distortion_csv(table: &DistortionTable) -> String {
 }
 
 /// Columns of a pose.
-const POSE: [&str; 7] = ["tx_mm", "ty_mm", "tz_mm", "qw", "qx", "qy", "qz"];
+pub(crate) const POSE: [&str; 7] = ["tx_mm", "ty_mm", "tz_mm", "qw", "qx", "qy", "qz"];
 /// Columns of the thesis's six numbers, about the model's origin.
 const THESIS: [&str; 6] = [
     "thesis_alpha_deg",
@@ -88,7 +88,7 @@ const THESIS: [&str; 6] = [
 /// Columns of standard deviations: of the pose, and what of them the calibration brings.
 const SIGMAS: [&str; 4] = ["sigma_t_mm", "sigma_r_deg", "calibration_sigma_t_mm", "calibration_sigma_r_deg"];
 /// Columns of half-widths of intervals.
-const INTERVALS: [&str; 6] = ["tx_mm", "ty_mm", "tz_mm", "rx_deg", "ry_deg", "rz_deg"];
+pub(crate) const INTERVALS: [&str; 6] = ["tx_mm", "ty_mm", "tz_mm", "rx_deg", "ry_deg", "rz_deg"];
 
 /// Numbers of the upper triangle of the covariance.
 const COVARIANCES: usize = 21;
@@ -131,7 +131,7 @@ fn empty(cells: usize) -> impl Iterator<Item = String> {
     std::iter::repeat_n(String::new(), cells)
 }
 
-fn pose_cells(pose: PoseRecord) -> impl Iterator<Item = String> {
+pub(crate) fn pose_cells(pose: PoseRecord) -> impl Iterator<Item = String> {
     let PoseRecord { translation_mm, quaternion_wxyz } = pose;
     translation_mm.map(|v| fixed(v, 6)).into_iter().chain(quaternion_wxyz.map(|v| fixed(v, 9)))
 }

@@ -26,9 +26,10 @@ use crate::prepare::{InputErrors, Job, Prepared};
 use crate::report::{Provenance, ReportError, report_html};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
 use crate::slices;
+use crate::smoothing::{self, SmoothRun, smoothed_csv};
 use crate::steps::{
     AXES, CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, JOINT, LABEL_SURFACE, LOFT, MATCH, MODEL,
-    OVERLAY, SEGMENT, SLICES, SPOTS, STEPS, Steps, TRACK,
+    OVERLAY, SEGMENT, SLICES, SMOOTH, SPOTS, STEPS, Steps, TRACK,
 };
 use crate::study::{Plate, PlateSource, Study, SurfaceSource, ViewSource};
 use crate::tracking::{Attempt, Single, Tracked, track};
@@ -182,11 +183,20 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     if !stopped {
         stopped = pool.install(|| together(&steps_of_frames, &mut frames)).is_none();
     }
-    let mut jointed = JointsRun::default();
+    let (mut jointed, mut smoothed) = (JointsRun::default(), SmoothRun::default());
+    let own = |frame: &Option<Frame>| {
+        frame.iter().flat_map(|f| &f.bodies).map(|body| body.matched.clone()).collect::<Vec<_>>()
+    };
+    if !stopped && prepared.study.smoothing.enabled {
+        let matches: Vec<_> = frames.iter().map(own).collect();
+        match pool.install(|| smoothing::run(&steps_of_frames, &matches)) {
+            Some(found) => smoothed = found,
+            None => stopped = true,
+        }
+    }
+    count(std::mem::take(&mut smoothed.done), &mut steps, &mut warnings);
+    failed(&smoothed.failures, &mut steps);
     if !stopped && !prepared.study.joints.is_empty() {
-        let own = |frame: &Option<Frame>| {
-            frame.iter().flat_map(|f| &f.bodies).map(|body| body.matched.clone()).collect::<Vec<_>>()
-        };
         let matches: Vec<_> = frames.iter().map(own).collect();
         match pool.install(|| joints::run::run(&steps_of_frames, &modelled.axes, &matches)) {
             Some(found) => jointed = found,
@@ -208,6 +218,8 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     outcome.slices = sliced.outcomes;
     outcome.models = modelled.outcomes;
     outcome.failures.splice(0..0, sliced.failures.into_iter().chain(modelled.failures));
+    outcome.failures.append(&mut smoothed.failures);
+    outcome.smoothed = smoothed.outcomes;
     outcome.failures.append(&mut jointed.failures);
     outcome.joints = jointed.outcomes;
     let plots = if stopped { Vec::new() } else { joints::run::write(&prepared.study, &mut outcome)? };
@@ -743,6 +755,7 @@ fn provenance(prepared: &Prepared) -> Provenance {
     parameters.push((SEGMENT.to_owned(), text(toml::to_string(&study.segment))));
     parameters.push((EDIT.to_owned(), text(toml::to_string(&study.edit))));
     parameters.push((MATCH.to_owned(), text(toml::to_string(&study.matching))));
+    parameters.push((SMOOTH.to_owned(), text(toml::to_string(&study.smoothing))));
     parameters.push((TRACK.to_owned(), text(toml::to_string(&study.tracking))));
     for joint in &study.joints {
         parameters.push((format!("{JOINT} {}", joint.name), text(toml::to_string(joint))));
@@ -757,7 +770,12 @@ fn write(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<()
         ("poses.README.txt", README.as_bytes().to_vec()),
         ("report.html", report_html(study, outcome, provenance)?.into_bytes()),
     ];
-    for (name, bytes) in files {
+    let smoothed = [
+        ("poses_smoothed.csv", smoothed_csv(study, outcome)?),
+        ("poses_smoothed.README.txt", smoothing::README.as_bytes().to_vec()),
+    ];
+    let smoothed = smoothed.into_iter().filter(|_| !outcome.smoothed.is_empty());
+    for (name, bytes) in files.into_iter().chain(smoothed) {
         let path = study.output.join(name);
         write_if_changed(&path, &bytes).map_err(|source| RunError::Write { path: slashes(&path), source })?;
     }

@@ -57,12 +57,14 @@ pub const MATCH: &str = "match";
 pub const TRACK: &str = "track";
 /// Step of the curves that are outlines.
 pub const CONTOUR: &str = "contour";
+/// Step of smoothed trials.
+pub const SMOOTH: &str = "smooth";
 /// Step of joints.
 pub const JOINT: &str = "joint";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
 /// All steps in order.
-pub const STEPS: [&str; 17] = [
+pub const STEPS: [&str; 18] = [
     SPOTS,
     DISTORTION,
     ENVIRONMENT,
@@ -78,6 +80,7 @@ pub const STEPS: [&str; 17] = [
     MATCH,
     TRACK,
     CONTOUR,
+    SMOOTH,
     JOINT,
     OVERLAY,
 ];

@@ -24,6 +24,8 @@ use crate::config::{
     Origin, PairBy, PipelineFile, PlateSection, SlicesSection, StatedUncertainty, TrialSection, Units,
 };
 use crate::diagnostics::{Problem, Problems, from_toml, meant, slashes};
+use biplane_trial::SmoothSettings;
+
 use crate::exports::ExportSection;
 use crate::joints::{StudyJoint, section};
 use crate::models::LANDMARKS;
@@ -70,6 +72,8 @@ pub struct Study {
     pub matching: MatchParams,
     /// How frames help each other.
     pub tracking: TrackParams,
+    /// How whole trials are smoothed.
+    pub smoothing: SmoothSettings,
     /// How edges are chosen for outlines.
     pub contour: ContourParams,
     /// Limits of `doctor`.
@@ -418,6 +422,15 @@ impl Study {
                 format!("[export] there is no fluoroscope `{view}`: {}", meant(view, names.iter().copied()));
             check.list.push(parameter(&text, "export", Some("view"), &text_of));
         }
+        for (key, value) in [
+            ("acceleration_mm_s2", file.smooth.acceleration_mm_s2),
+            ("acceleration_deg_s2", file.smooth.acceleration_deg_s2),
+        ] {
+            if let Some(value) = value.filter(|v| !v.is_finite() || *v <= 0.0) {
+                let what = format!("[smooth] {key} = {value}, expected a number above 0, or none to find it");
+                check.list.push(parameter(&text, "smooth", Some(key), &what));
+            }
+        }
         let study = check.study(file);
         if check.list.is_empty() { Ok(study) } else { Err(wrong(check.list)) }
     }
@@ -449,6 +462,7 @@ impl Check {
             track,
             contour,
             doctor,
+            smooth,
             output,
             export,
         } = file;
@@ -522,6 +536,7 @@ impl Check {
             edit,
             matching,
             tracking: track,
+            smoothing: smooth,
             contour,
             doctor,
             output: folder,

@@ -21,6 +21,7 @@ mod picture;
 mod plate;
 mod ply;
 mod slice_contours;
+mod smoothed;
 mod spots;
 mod volume;
 
@@ -41,5 +42,6 @@ pub use model::{ModelMesh, Prediction, Start};
 pub use picture::Picture;
 pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};
 pub use slice_contours::{ContourSlice, SliceContour, SliceContours, SliceFlag, SlicePoint};
+pub use smoothed::{SmoothedPose, SmoothedTrial};
 pub use spots::{Circle, Spot, Spots};
 pub use volume::Volume;

@@ -108,3 +108,24 @@ fn a_persons_pose_is_left_as_it_came_out() {
     scene.biplane(&["run"]);
     assert_eq!(column(&scene, "start")[1], "edit");
 }
+
+#[test]
+fn a_smoothed_trial_stands_beside_the_raw_one_and_says_what_it_moved() {
+    let scene = Scene::new();
+    scene.edit("search_px = 20.0\n", "search_px = 20.0\n[smooth]\nenabled = true\n");
+    let (code, out, err) = scene.biplane(&["run"]);
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.contains("smoothing moved box in squat by 0.0"), "{out}");
+    let raw = scene.read("results/poses.csv");
+    let smoothed = scene.read("results/poses_smoothed.csv");
+    assert_eq!(smoothed.lines().count(), 4, "{smoothed}");
+    assert!(smoothed.lines().nth(2).unwrap().starts_with("squat,0001,box,smoothed,"), "{smoothed}");
+    assert!(
+        scene.biplane(&["explain"]).1.starts_with("nothing would run"),
+        "{}",
+        scene.biplane(&["explain"]).1
+    );
+    scene.edit("enabled = true", "enabled = false");
+    scene.biplane(&["run"]);
+    assert_eq!(scene.read("results/poses.csv"), raw, "raw poses are the same with and without");
+}
