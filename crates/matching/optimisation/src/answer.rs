@@ -7,7 +7,7 @@
 //! **Intervals** are `1.96` standard deviations to either side: the poses' errors are sums over many edge points, hence close to normal.
 //!
 //! **Ambiguous** is a pose beside which another one, farther off than any uncertainty that is called good, passes every limit of a good
-//! pose by itself. Not guaranteed: that such another one is found; only what a start led to is compared.
+//! pose by itself, and fits less of the outline by no more than a twentieth. Not guaranteed: that such another one is found; only what a start led to is compared.
 
 use biplane_artifact::{Alternative, CalibrationUncertainty, Match, StartsTried, Verdict, ViewFit};
 use biplane_geometry::{Point3, Pose};
@@ -21,6 +21,9 @@ const NINETY_FIVE: f64 = 1.959_964;
 /// Poses nearer than this are one: the centroid's displacement, mm, and the rotation, rad. Starts that end at one pose end within a
 /// hundredth of it; the next pose that fits a body of little relief lies several degrees off.
 const APART: (f64, f64) = (1.0, 0.035);
+
+/// A pose fits clearly better than another one where this much more of the outline fits well (the share of a score).
+pub(crate) const CLEARLY: f64 = 0.05;
 
 /// What a search knows beside the pose it ended at.
 pub(crate) struct Searched {
@@ -102,7 +105,8 @@ pub(crate) fn answer_of(
         away.translation_mm > APART.0 || away.rotation_rad > APART.1
     };
     let good = |end: &&Refined| judge(end, names, limits).1 == Verdict::Good;
-    let rivals = ends.iter().filter(|_| verdict == Verdict::Good).filter(apart).filter(good);
+    let near = |end: &&Refined| best.score() - end.score() <= CLEARLY;
+    let rivals = ends.iter().filter(|_| verdict == Verdict::Good).filter(apart).filter(near).filter(good);
     let rival = rivals.max_by(|a, b| a.score().total_cmp(&b.score()));
     if let Some(rival) = rival {
         let away = away(rival);
@@ -194,7 +198,7 @@ mod tests {
     #[test]
     fn another_good_pose_makes_the_best_one_ambiguous_and_is_kept() {
         let mesh = tetrahedron();
-        let found = answered(&[end(&mesh, 9.0, 0.88, 0.9), end(&mesh, 0.0, 0.93, 0.95)], &mesh);
+        let found = answered(&[end(&mesh, 9.0, 0.90, 0.92), end(&mesh, 0.0, 0.93, 0.95)], &mesh);
         assert_eq!(found.verdict, Verdict::Ambiguous);
         assert!(
             found.reason.starts_with("another pose fits as well, 9.0 mm and 0.0 deg away"),
@@ -203,7 +207,7 @@ mod tests {
         );
         assert!((found.objective - 0.07).abs() < 1e-12 && found.pose.translation_mm[0].abs() < 1e-12);
         let other = found.alternative.unwrap();
-        assert!((other.objective - 0.12).abs() < 1e-12 && (other.pose.translation_mm[0] - 9.0).abs() < 1e-12);
+        assert!((other.objective - 0.10).abs() < 1e-12 && (other.pose.translation_mm[0] - 9.0).abs() < 1e-12);
     }
 
     #[test]
@@ -213,6 +217,9 @@ mod tests {
             let found = answered(&[end(&mesh, 0.0, 0.93, 0.95), end(&mesh, shift, 0.6, matched)], &mesh);
             assert_eq!((found.verdict, found.alternative), (Verdict::Good, None), "{shift} {matched}");
         }
+        // A good one that fits clearly less is none.
+        let found = answered(&[end(&mesh, 0.0, 0.93, 0.95), end(&mesh, 9.0, 0.80, 0.9)], &mesh);
+        assert_eq!((found.verdict, found.alternative), (Verdict::Good, None));
         // One that is not good itself is called what it is.
         let found = answered(&[end(&mesh, 0.0, 0.6, 0.7), end(&mesh, 9.0, 0.55, 0.7)], &mesh);
         assert_eq!((found.verdict, found.alternative), (Verdict::Doubtful, None));

@@ -398,6 +398,14 @@ pub fn match_anywhere(
             descend(&from, &mut ends)?;
         }
     }
+    if good(&ends)
+        && let Some(best) = best_end(&ends).map(|end| end.pose)
+    {
+        // What looks nearly alike from elsewhere is held against it.
+        for from in mesh.looks_alike(&best, views.iter().map(|view| &view.fluoroscope)) {
+            descend(&from, &mut ends)?;
+        }
+    }
     let best = best_end(&ends).map(|end| end.pose);
     let same = |end: &Refined, as_one: &Pose| {
         let away = end.pose.error_against(as_one, mesh.centroid());

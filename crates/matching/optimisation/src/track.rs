@@ -23,6 +23,7 @@ use biplane_stage::{Context, Hashed, Stage, inputs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::answer::CLEARLY;
 use crate::claimed::without_claimed;
 use crate::stage::{MatchError, MatchParams, match_anywhere, views_of};
 use crate::{View, assess};
@@ -135,9 +136,6 @@ pub struct TrackFrameParams {
     /// One a body of `others`: whether its flat ends are no outline.
     pub others_without_cut_ends: Vec<bool>,
 }
-
-/// A pose that fits better than the expected one by this much of its objective speaks against it.
-const CLEARLY: f64 = 0.05;
 
 /// Chooses among `own` and the matches that were found from predictions; `pivot` is the mesh's centroid (model, mm). `seen` says how the
 /// body would be seen at the first prediction, where it is lost.

@@ -20,6 +20,7 @@
 
 mod grid;
 mod rim;
+mod symmetry;
 mod tree;
 mod visible;
 

@@ -12,9 +12,11 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use biplane_geometry::{Mesh, Point3, Vector3};
+use biplane_fluoroscope::Fluoroscope;
+use biplane_geometry::{Mesh, Point3, Pose, Vector3};
 use biplane_surface::{Edges, Surface, cut_ends};
 
+use crate::symmetry::NearSymmetries;
 use crate::tree::{Item, Tree};
 
 /// Faces that meet at more than this are a crease, degrees.
@@ -34,6 +36,7 @@ pub struct RimMesh {
     /// How far beside the rim one looks whether a face covers the picture, px.
     pub(crate) beside_px: f64,
     surface: Surface,
+    symmetries: NearSymmetries,
     centroid: Point3,
     radius_of_gyration: f64,
 }
@@ -99,6 +102,12 @@ pub(crate) struct Side {
 }
 
 impl RimMesh {
+    /// Poses at which the body looks nearly as at `pose` in one of the views, or in all of them: it is nearly its own mirror image, or the same after half
+    /// a turn. None for a body without such a symmetry about its principal axes.
+    pub fn looks_alike<'a>(&self, pose: &Pose, views: impl Iterator<Item = &'a Fluoroscope>) -> Vec<Pose> {
+        self.symmetries.others(pose, &self.centroid, views)
+    }
+
     /// A mesh as a sample of a smooth surface with creases.
     pub fn new(mesh: &Mesh) -> Self {
         Self::build(mesh, CREASE_DEG, &|_| false)
@@ -225,6 +234,8 @@ impl RimMesh {
         let items = (0..triangles.len() as u32).map(Item::Triangle);
         let items = items.chain((0..creases.len() as u32).map(Item::Crease)).collect();
         let tree = Tree::new(items, &mut wedges, &mut triangles, &mut creases, &mut sides);
+        let surface = Surface::new(mesh);
+        let symmetries = NearSymmetries::of(mesh, &surface);
         Self {
             wedges,
             triangles,
@@ -233,7 +244,8 @@ impl RimMesh {
             tree,
             edges: number as usize,
             beside_px: if flat { 1e-8 } else { 0.05 },
-            surface: Surface::new(mesh),
+            surface,
+            symmetries,
             centroid,
             radius_of_gyration: mesh.radius_of_gyration(),
         }
