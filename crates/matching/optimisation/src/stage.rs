@@ -84,6 +84,9 @@ const WIDE: f64 = 5.0;
 /// Poses that are tried where a body is looked for anywhere.
 const CANDIDATES: usize = 16;
 
+/// A pose that is turned from a given start by more than this is not the one that is meant, rad.
+const START_DECIDES: f64 = 0.6;
+
 /// Ends nearer than this to the best are the same pose: the centroid's displacement, mm, and the rotation, rad.
 const SAME: (f64, f64) = (0.5, 0.02);
 
@@ -401,9 +404,12 @@ pub fn match_anywhere(
     if good(&ends)
         && let Some(best) = best_end(&ends).map(|end| end.pose)
     {
-        // What looks nearly alike from elsewhere is held against it.
-        for from in mesh.looks_alike(&best, views.iter().map(|view| &view.fluoroscope)) {
-            descend(&from, &mut ends)?;
+        // What looks nearly alike from elsewhere is held against it, unless a start says that it is not there.
+        let meant =
+            |pose: &Pose| start.is_none_or(|s| s.rotation().angle_to(&pose.rotation()) < START_DECIDES);
+        let alike = mesh.looks_alike(&best, views.iter().map(|view| &view.fluoroscope));
+        for from in alike.iter().filter(|pose| meant(pose)) {
+            descend(from, &mut ends)?;
         }
     }
     let best = best_end(&ends).map(|end| end.pose);
