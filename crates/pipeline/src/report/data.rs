@@ -85,6 +85,9 @@ struct Row {
     poses: Vec<Option<[f64; 7]>>,
     /// Half-widths of the 95 % intervals: of the centroid (mm), of the rotation (degrees), along laboratory axes.
     half_95: Vec<Option<[f64; 6]>>,
+    /// The smoothed poses, beside the raw ones, where there are such.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    smoothed: Vec<Option<[f64; 7]>>,
     fit_mm: Vec<Option<f64>>,
     rms_px: Vec<Option<Vec<f64>>>,
     share: Vec<Option<Vec<f64>>>,
@@ -179,6 +182,10 @@ fn of_trial<'a>(study: &'a Study, outcome: &'a Outcome, joints: &'a [Joint], tri
         let mut row = Row::default();
         for (number, frame) in frames.iter().enumerate() {
             add(&mut row, number, frame.bodies.get(place), &names);
+        }
+        let body = recording.bodies.get(place);
+        if let Some(of) = outcome.smoothed.iter().find(|s| s.trial == trial && Some(&s.body) == body) {
+            row.smoothed = of.smoothed.frames.iter().map(|f| f.map(|f| numbers(f.pose))).collect();
         }
         row
     };

@@ -14,7 +14,7 @@ pub(super) fn methods(study: &Study, outcome: &Outcome) -> String {
     let mut text = vec![frames(study, outcome)];
     text.push(calibration(study, outcome));
     text.extend(models(study, outcome));
-    text.push(matching(study));
+    text.push(matching(study, !outcome.smoothed.is_empty()));
     text.push(verdicts(study, outcome));
     text.extend(how_sure(study, outcome));
     text.push(
@@ -118,7 +118,7 @@ fn models(study: &Study, outcome: &Outcome) -> Option<String> {
     (!all.is_empty()).then(|| format!("The models were those of {}.", list(&all)))
 }
 
-fn matching(study: &Study) -> String {
+fn matching(study: &Study, smoothed: bool) -> String {
     let segment = &study.segment;
     let edges = toml::to_string(segment).ok().and_then(|text| {
         let smoothing = text.lines().find(|line| line.starts_with("smoothing_px"))?;
@@ -136,12 +136,17 @@ fn matching(study: &Study) -> String {
         Method::Search => "the objective and optimiser named in the parameters below were used",
     };
     let tracked = if study.tracks() {
-        " Frames that did not match well by themselves were tried again from the poses of their neighbours; no pose was smoothed."
+        " Frames that did not match well by themselves were tried again from the poses of their neighbours."
     } else {
-        " Every frame was matched by itself; no pose was smoothed."
+        " Every frame was matched by itself."
+    };
+    let smoothed = if smoothed {
+        " The raw poses are reported; smoothed ones were made beside them."
+    } else {
+        " No pose was smoothed."
     };
     format!(
-        "Edges were found in each picture to a fraction of a pixel{}, and {how}.{tracked}",
+        "Edges were found in each picture to a fraction of a pixel{}, and {how}.{tracked}{smoothed}",
         edges.unwrap_or_default()
     )
 }

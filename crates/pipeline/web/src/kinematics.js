@@ -17,11 +17,13 @@ export function freedoms(trial, place) {
   const used = row.poses.map((pose, i) => (pose && row.verdicts[i] !== 'f' ? pose : null));
   const first = used.findIndex((pose, i) => pose && row.verdicts[i] === 'g');
   const from = used[first >= 0 ? first : used.findIndex(Boolean)];
-  const at = used.map((pose) => pose && add(pose.slice(0, 3), times(matrixOf(pose.slice(3)), centroid)));
-  const turned = used.map((pose) => pose && vectorOf(product(pose.slice(3), conjugate(from.slice(3)))).map((v) => v * 180 / Math.PI));
+  const places = (poses) => poses.map((pose) => pose && add(pose.slice(0, 3), times(matrixOf(pose.slice(3)), centroid)));
+  const turns = (poses) => poses.map((pose) => pose && vectorOf(product(pose.slice(3), conjugate(from.slice(3)))).map((v) => v * 180 / Math.PI));
+  const [at, turned] = [places(used), turns(used)];
+  const [smoothAt, smoothTurned] = row.smoothed && from ? [places(row.smoothed), turns(row.smoothed)] : [null, null];
   const half = (k) => row.half_95.map((h, i) => (h && used[i] ? h[k] : null));
-  return [...AXES.map((name, k) => ({ title: `${name}`, unit: 'mm, centroid', values: at.map((p) => p && p[k]), half: half(k) })),
-    ...AXES.map((name, k) => ({ title: `rotation ${name}`, unit: '°, since the first good frame', values: turned.map((v) => v && v[k]), half: half(3 + k) }))];
+  return [...AXES.map((name, k) => ({ title: `${name}`, unit: 'mm, centroid', values: at.map((p) => p && p[k]), half: half(k), smoothed: smoothAt?.map((p) => p && p[k]) })),
+    ...AXES.map((name, k) => ({ title: `rotation ${name}`, unit: '°, since the first good frame', values: turned.map((v) => v && v[k]), half: half(3 + k), smoothed: smoothTurned?.map((v) => v && v[k]) }))];
 }
 
 export function kinematicsTab(host, visible) {
