@@ -4,6 +4,7 @@
 //! too. What only the project itself needs is here: `validate`, `accuracy`, `kinematics` and `starts`.
 
 mod kinematics;
+mod pictures;
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -108,6 +109,14 @@ enum Task {
         #[arg(long)]
         output: PathBuf,
     },
+    /// Take pictures of a report with a Chromium without a screen: those of docs/images are of the example study.
+    Pictures {
+        /// The folder of results.
+        results: PathBuf,
+        /// The folder to write into.
+        #[arg(long, default_value = "docs/images")]
+        output: PathBuf,
+    },
     /// Print start poses (CSV) that lie exactly so far from known poses, in random directions.
     Starts {
         /// The trial they are for.
@@ -149,7 +158,7 @@ fn section_names() -> clap::builder::PossibleValuesParser {
 
 fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let own = ["validate", "accuracy", "kinematics", "relative", "picture", "starts"];
+    let own = ["validate", "accuracy", "kinematics", "relative", "picture", "pictures", "starts"];
     if !arguments.get(1).is_some_and(|a| own.iter().any(|o| a == o)) {
         let passed = arguments.into_iter().skip(1);
         return biplane::cli::main(std::iter::once(OsString::from("cargo xtask")).chain(passed));
@@ -172,6 +181,7 @@ fn main() -> ExitCode {
                 Ok(false)
             }
         },
+        Task::Pictures { results, output } => pictures::pictures(&results, &output),
         Task::Starts { trial, bodies, drawn } => starts(&trial, &bodies, &drawn.offset(1)),
     };
     match done {

@@ -121,7 +121,7 @@ fn files_below(folder: &Path) -> Vec<PathBuf> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if !path.is_dir() {
             files.push(path);
-        } else if ![".biplane", "results", "target", ".git"].contains(&name.as_str()) {
+        } else if ![".biplane", "results", "target", ".git", "node_modules"].contains(&name.as_str()) {
             files.extend(files_below(&path));
         }
     }

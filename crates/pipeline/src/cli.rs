@@ -272,6 +272,25 @@ Searches start where [match.search] of the pipeline file says, whatever the stud
         #[arg(long, default_value_t = 1)]
         threads: usize,
     },
+    /// Write the report of the last run as one file with chosen frames, to be sent to somebody.
+    #[command(after_help = "Examples:
+  biplane report --single-file --frames 3,17           results/report_single.html: these frames of every trial
+  biplane report --single-file --frames lunge/3 --output knee.html
+
+It is made of results/report.html and results/report/ as the last run wrote them. Without --frames it has every frame.")]
+    Report {
+        #[command(flatten)]
+        pipeline: Pipeline,
+        /// Everything in one file; without it the path of the report is printed, and nothing is written.
+        #[arg(long)]
+        single_file: bool,
+        /// Labels or numbers of frames, each with its trial and `/` before it or not, parted by commas.
+        #[arg(long, value_delimiter = ',', value_name = "FRAME", requires = "single_file")]
+        frames: Vec<String>,
+        /// The file; by default report_single.html in the folder of results.
+        #[arg(short, long, requires = "single_file")]
+        output: Option<PathBuf>,
+    },
     /// Show the results of the last run and the size of the store.
     #[command(
         after_help = "The fit is the root mean square distance of the outline from its edges, over all views.
@@ -490,6 +509,21 @@ fn obey(command: Command) -> Ended {
         Command::Difference { foreign, of } => {
             let (study, path, wish) = foreign.taken()?;
             print(&difference(study, &path, of.as_deref(), &wish).map_err(exchange_failed)?);
+            Ok(End::Good)
+        }
+        Command::Report { pipeline, single_file, frames, output } => {
+            let study = load(&pipeline.file)?;
+            let path = study.output.join("report.html");
+            if !single_file {
+                print(&format!("{}\n", path.display()));
+                return Ok(if path.exists() { End::Good } else { End::SomeFailed });
+            }
+            let page = crate::report::single::single_file(&study.output, &frames);
+            let page = page.map_err(|error| (End::BadInput, error.to_string()))?;
+            let to = output.unwrap_or_else(|| study.output.join("report_single.html"));
+            crate::results::write_if_changed(&to, page.as_bytes())
+                .map_err(|error| (End::Internal, format!("cannot write {}: {error}", to.display())))?;
+            print(&format!("{} ({:.1} MB)\n", to.display(), page.len() as f64 / 1e6));
             Ok(End::Good)
         }
         Command::Doctor { pipeline, trial } => {

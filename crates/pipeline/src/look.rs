@@ -13,7 +13,10 @@ use crate::joints::run::Axes;
 use crate::models;
 use crate::prepare::{InputErrors, Job, Prepared};
 use crate::smoothing;
-use crate::steps::{CONTOUR, EDIT, ItemError, MATCH, OVERLAY, SEGMENT, STEPS, Steps, TRACK, read_stored};
+use crate::steps::{
+    CONTOUR, EDIT, ItemError, MATCH, OVERLAY, REPORT_FRAME, REPORT_MODEL, SEGMENT, STEPS, Steps, TRACK,
+    read_stored,
+};
 use crate::study::Study;
 use crate::summary::aligned;
 use crate::tracking::{Attempt, Single, Tracked, track};
@@ -81,6 +84,21 @@ pub fn look(study: Study) -> Result<Vec<Look>, LookError> {
     };
     let mut frames: Vec<FrameLook> = prepared.jobs.par_iter().map(|job| look_at(&steps, job)).collect();
     look_together(&steps, &axes, &mut frames);
+    for body in crate::report::models::shown(&prepared.study) {
+        let item = Item::from(prepared.study.bodies[body].name.as_str());
+        match steps.explain_report_model(body) {
+            Ok(Some(why)) => {
+                let fate = if why.cached() { Fate::Cached } else { Fate::Runs };
+                made.push(Look { step: REPORT_MODEL, fate, line: why.to_string() });
+            }
+            Ok(None) => {}
+            // Whether there is a model is said where it is made.
+            Err(_) if steps.ever_made(REPORT_MODEL, &item) => {
+                made.push(Look::after(REPORT_MODEL, &item, true))
+            }
+            Err(_) => {}
+        }
+    }
     if let Err(error) = prepared.index.save(false) {
         tracing::debug!("the index of inputs was not written: {error}");
     }
@@ -204,6 +222,17 @@ fn look_together(steps: &Steps<'_>, axes: &Axes, frames: &mut [FrameLook]) {
             let explain = || steps.explain_overlay(job, slot, &matches);
             frame.looks.push(after(steps, OVERLAY, &item, frame.fails, ready, explain));
         }
+        let item = steps.item_of_frame(job);
+        let alone = all || (0..job.bodies.len()).all(|p| !steps.ever_made(TRACK, &item_of(job, p)));
+        let known = matches.len() == job.bodies.len();
+        let shown: Vec<_> = matches
+            .iter()
+            .zip(&frame.bodies)
+            .enumerate()
+            .map(|(place, (found, body))| (place, *found, body.curves.as_slice()))
+            .collect();
+        let explain = || steps.explain_report_frame(job, &shown);
+        frame.looks.push(after(steps, REPORT_FRAME, &item, frame.fails, alone && known, explain));
     });
     if let Some(last) = frames.last_mut() {
         last.looks.extend(smooth);

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
-use biplane_artifact::{Content, Picture};
+use biplane_artifact::{Artifact, Content, Picture, ReportFrame};
 use serde::{Deserialize, Serialize};
 
 use crate::results::write_if_changed;
@@ -73,7 +73,7 @@ fn take_away(results: &Path, name: &str, hash: &str) -> std::io::Result<bool> {
     // The list is a file that anyone can edit: it must not reach out of the folder of overlays.
     let inside = Path::new(name).components().all(|c| matches!(c, Component::Normal(_)));
     if !inside
-        || !["overlays/", "calibration/", "slices/", "kinematics/", "exports/"]
+        || !["overlays/", "calibration/", "slices/", "kinematics/", "exports/", "report/"]
             .iter()
             .any(|folder| name.starts_with(folder))
     {
@@ -84,7 +84,8 @@ fn take_away(results: &Path, name: &str, hash: &str) -> std::io::Result<bool> {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(false),
         bytes => bytes?,
     };
-    if Picture(bytes).content_hash().to_hex() != hash {
+    let of_script = ReportFrame::decode(&bytes).ok().map(|script| script.content_hash().to_hex());
+    if of_script.as_deref() != Some(hash) && Picture(bytes).content_hash().to_hex() != hash {
         return Ok(false);
     }
     std::fs::remove_file(&path)?;

@@ -112,6 +112,8 @@ pub struct FrameOutcome {
     pub bodies: Vec<BodyOutcome>,
     /// Index of the view, and its overlay relative to the folder of results, where there is one.
     pub overlays: Vec<(usize, PathBuf)>,
+    /// Its part of the report relative to the folder of results, where there is one.
+    pub script: Option<PathBuf>,
 }
 
 /// A bone in the slices of a volume.

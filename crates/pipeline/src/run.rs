@@ -23,13 +23,13 @@ use crate::made::Made;
 use crate::models;
 use crate::outcome::{BodyOutcome, ContourOutcome, Failure, FrameOutcome, Outcome, StartKind, StepCount};
 use crate::prepare::{InputErrors, Job, Prepared};
-use crate::report::{Provenance, ReportError, report_html};
+use crate::report::{self, Provenance, REPORT, ReportError};
 use crate::results::{README, copy_if_other, poses_csv, write_if_changed};
 use crate::slices;
 use crate::smoothing::{self, SmoothRun, smoothed_csv};
 use crate::steps::{
     AXES, CONTOUR, DISTORTION, Done, EDIT, ENVIRONMENT, ItemError, JOINT, LABEL_SURFACE, LOFT, MATCH, MODEL,
-    OVERLAY, SEGMENT, SLICES, SMOOTH, SPOTS, STEPS, Steps, TRACK,
+    OVERLAY, REPORT_FRAME, SEGMENT, SLICES, SMOOTH, SPOTS, STEPS, Steps, TRACK,
 };
 use crate::study::{Plate, PlateSource, Study, SurfaceSource, ViewSource};
 use crate::tracking::{Attempt, Single, Tracked, track};
@@ -207,6 +207,11 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     failed(&jointed.failures, &mut steps);
     jointed.warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
     warnings.append(&mut jointed.warnings);
+    let bodies = if stopped { None } else { report::models::bodies(&steps_of_frames) };
+    stopped |= bodies.is_none();
+    let bodies = bodies.unwrap_or_default();
+    count(bodies.done.clone(), &mut steps, &mut warnings);
+    failed(&bodies.failures, &mut steps);
     let written = calibrated.write(&prepared.study.output, &prepared.study.views);
     let written = written.map_err(|(place, source)| RunError::Write {
         path: slashes(&prepared.study.output.join(place)),
@@ -217,6 +222,7 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     outcome.calibration = std::mem::take(&mut calibrated);
     outcome.slices = sliced.outcomes;
     outcome.models = modelled.outcomes;
+    outcome.failures.extend(bodies.failures.iter().cloned());
     outcome.failures.splice(0..0, sliced.failures.into_iter().chain(modelled.failures));
     outcome.failures.append(&mut smoothed.failures);
     outcome.smoothed = smoothed.outcomes;
@@ -245,7 +251,7 @@ pub fn run(study: Study, threads: usize, context: &Context) -> Result<(Study, Ou
     if stopped {
         return Err(RunError::Stopped { done, frames: jobs });
     }
-    write(&study, &outcome, &provenance)?;
+    write(&study, &outcome, &provenance, &bodies)?;
     Ok((study, outcome))
 }
 
@@ -277,6 +283,7 @@ fn run_frame(steps: &Steps<'_>, job: &Job) -> Option<Frame> {
             time_s: job.time_s,
             bodies: Vec::new(),
             overlays: Vec::new(),
+            script: None,
         },
         failures: Vec::new(),
         warnings: Vec::new(),
@@ -435,6 +442,36 @@ fn finish_frame(steps: &Steps<'_>, number: usize, frame: &mut Frame, tracked: &T
         overlays(steps, job, &matches, frame)?;
     } else {
         frame.counts.entry(OVERLAY).or_default().failed += job.pictures.len();
+    }
+    report_frame(steps, job, frame)
+}
+
+/// Draws a frame for the report and copies it to the results; `None` if the run was stopped.
+fn report_frame(steps: &Steps<'_>, job: &Job, frame: &mut Frame) -> Option<()> {
+    let study = &steps.prepared.study;
+    // A picture that cannot be used was told already.
+    if (0..job.pictures.len()).all(|slot| steps.picture(job, slot).is_err()) {
+        frame.counts.entry(REPORT_FRAME).or_default().failed += 1;
+        return Some(());
+    }
+    let bodies = frame.bodies.iter().enumerate();
+    let shown: Vec<_> =
+        bodies.filter_map(|(place, b)| Some((place, b.matched.clone()?, b.curves.as_slice()))).collect();
+    let result = steps.report_frame(job, &shown);
+    let name = format!("{REPORT_FRAME}/{}", steps.item_of_frame(job));
+    let Ok(stored) = frame.keep(study, REPORT_FRAME, &name, result)? else { return Some(()) };
+    let place = Path::new(REPORT).join("frames").join(&study.trials[job.trial].name);
+    let place = place.join(format!("{}.js", job.label));
+    match copy_if_other(stored.path(), &study.output.join(&place)) {
+        Ok(()) => {
+            frame.made.push((slashes(&place), stored.hash().to_hex()));
+            frame.outcome.script = Some(place);
+        }
+        Err(error) => {
+            let message = format!("cannot write {}: {error}", slashes(&study.output.join(&place)));
+            frame.counts.entry(REPORT_FRAME).or_default().failed += 1;
+            frame.failures.push(Failure { item: name, message: study.shorten(&message) });
+        }
     }
     Some(())
 }
@@ -764,18 +801,26 @@ fn provenance(prepared: &Prepared) -> Provenance {
     Provenance { parameters, inputs }
 }
 
-fn write(study: &Study, outcome: &Outcome, provenance: &Provenance) -> Result<(), RunError> {
+fn write(
+    study: &Study,
+    outcome: &Outcome,
+    provenance: &Provenance,
+    bodies: &report::models::Bodies,
+) -> Result<(), RunError> {
+    let contents = report::Contents { provenance, bodies, searches: &[] };
+    let scripts = report::scripts(bodies);
     let files = [
         ("poses.csv", poses_csv(study, outcome)?),
         ("poses.README.txt", README.as_bytes().to_vec()),
-        ("report.html", report_html(study, outcome, provenance)?.into_bytes()),
+        ("report.html", report::page(study, outcome, &contents)?.into_bytes()),
     ];
     let smoothed = [
         ("poses_smoothed.csv", smoothed_csv(study, outcome)?),
         ("poses_smoothed.README.txt", smoothing::README.as_bytes().to_vec()),
     ];
     let smoothed = smoothed.into_iter().filter(|_| !outcome.smoothed.is_empty());
-    for (name, bytes) in files.into_iter().chain(smoothed) {
+    let named = files.into_iter().chain(smoothed).map(|(name, bytes)| (Path::new(name).to_owned(), bytes));
+    for (name, bytes) in named.chain(scripts) {
         let path = study.output.join(name);
         write_if_changed(&path, &bytes).map_err(|source| RunError::Write { path: slashes(&path), source })?;
     }
@@ -800,6 +845,7 @@ mod tests {
                 time_s: None,
                 bodies: vec![body(Err("why".into()))],
                 overlays: vec![],
+                script: None,
             },
             failures: vec![],
             warnings: vec!["w".into()],

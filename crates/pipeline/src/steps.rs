@@ -4,7 +4,7 @@
 //! `match/<trial>/<frame>/<body>` a pose from the curves of all views, `track/<trial>/<frame>/<body>` one more where other frames or bodies
 //! help, `contour/<trial>/<frame>/<view>/<body>` says which curves are
 //! the body's outline, `overlay/<trial>/<frame>/<view>` is a picture with the outlines of the posed bodies. Those of slices are in
-//! [`crate::slices`], those of models in [`crate::models`].
+//! [`crate::slices`], those of models in [`crate::models`], those of the report in [`crate::report::item`].
 
 use biplane_artifact::{
     Artifact, CalibrationUncertainty, Contour, Curves, EditedContour, Match, ModelMesh, Picture,
@@ -63,8 +63,12 @@ pub const SMOOTH: &str = "smooth";
 pub const JOINT: &str = "joint";
 /// Step of pictures for people.
 pub const OVERLAY: &str = "overlay";
+/// Step of bodies for the report.
+pub const REPORT_MODEL: &str = "report_model";
+/// Step of frames of the report.
+pub const REPORT_FRAME: &str = "report_frame";
 /// All steps in order.
-pub const STEPS: [&str; 18] = [
+pub const STEPS: [&str; 20] = [
     SPOTS,
     DISTORTION,
     ENVIRONMENT,
@@ -83,6 +87,8 @@ pub const STEPS: [&str; 18] = [
     SMOOTH,
     JOINT,
     OVERLAY,
+    REPORT_MODEL,
+    REPORT_FRAME,
 ];
 
 /// Why an item has no output.
@@ -389,7 +395,7 @@ impl Steps<'_> {
         self.explain::<ContourOf>(CONTOUR, &self.item_of_body(job, slot, place), &parts)
     }
 
-    fn load_model(&self, body: usize) -> Result<Hashed<ModelMesh>, String> {
+    pub(crate) fn load_model(&self, body: usize) -> Result<Hashed<ModelMesh>, String> {
         self.model(body).map_err(|e| e.to_string())?.load()
     }
 
@@ -616,7 +622,7 @@ impl Steps<'_> {
     }
 
     /// For people; a file that is not what the index of inputs said is read again next time.
-    fn failed<S: std::fmt::Display, L: std::fmt::Display>(
+    pub(crate) fn failed<S: std::fmt::Display, L: std::fmt::Display>(
         &self,
         job: &Job,
         slot: Option<usize>,
@@ -660,7 +666,12 @@ impl Steps<'_> {
         self.explain::<MatchBody>(MATCH, &item, &parts)
     }
 
-    fn explain<S: Stage>(&self, step: &str, item: &Item, parts: &KeyParts) -> Explained<S::Output> {
+    pub(crate) fn explain<S: Stage>(
+        &self,
+        step: &str,
+        item: &Item,
+        parts: &KeyParts,
+    ) -> Explained<S::Output> {
         let why = self.store.explain::<S>(step, item, parts).map_err(ItemError::of)?;
         let found = if why.cached() {
             self.store.get::<S::Output>(parts.key()).map_err(ItemError::of)?

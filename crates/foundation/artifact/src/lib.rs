@@ -20,6 +20,7 @@ mod npy;
 mod picture;
 mod plate;
 mod ply;
+mod report_frame;
 mod slice_contours;
 mod smoothed;
 mod spots;
@@ -41,6 +42,7 @@ pub use matched::{Alternative, Match, PoseRecord, StartsTried, Verdict, ViewFit}
 pub use model::{ModelMesh, Prediction, Start};
 pub use picture::Picture;
 pub use plate::{MatchedSpot, ModelScore, PlateClick, PlateClicks, PlateFit, PlatePattern, PlateSpot};
+pub use report_frame::ReportFrame;
 pub use slice_contours::{ContourSlice, SliceContour, SliceContours, SliceFlag, SlicePoint};
 pub use smoothed::{SmoothedPose, SmoothedTrial};
 pub use spots::{Circle, Spot, Spots};

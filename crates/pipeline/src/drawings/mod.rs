@@ -7,7 +7,7 @@
 
 mod arrows;
 mod backdrop;
-mod base64;
+pub(crate) mod base64;
 mod bead;
 mod camera;
 mod colours;

@@ -63,7 +63,7 @@ fn an_outline_put_right_is_taken_and_only_its_frame_runs() {
     // As it was written it is no edit.
     let (code, out, _) = scene.biplane(&["run"]);
     assert_eq!(code, 0);
-    assert!(out.contains("Nothing to do: 22 items cached."), "{out}");
+    assert!(out.contains("Nothing to do: 25 items cached."), "{out}");
     assert!(out.contains("Edited contours: 0 file(s) used, 1 not edited yet"), "{out}");
     let (code, listed, _) = scene.biplane(&["edits"]);
     assert_eq!(code, 0);
@@ -85,7 +85,7 @@ fn an_outline_put_right_is_taken_and_only_its_frame_runs() {
         + &["match/squat/0001/box", "contour/squat/0001/A/box", "contour/squat/0001/B/box"]
             .map(after)
             .concat()
-        + &["overlay/squat/0001/A", "overlay/squat/0001/B"].map(after).concat();
+        + &["overlay/squat/0001/A", "overlay/squat/0001/B", "report_frame/squat/0001"].map(after).concat();
     assert_eq!(why, expected);
     let (_, out, err) = scene.biplane(&["run"]);
     assert!(
@@ -106,7 +106,7 @@ fn an_outline_put_right_is_taken_and_only_its_frame_runs() {
     let median: f64 = row[3].parse().unwrap();
     assert_eq!(row[..3], ["edits/squat/0001_A.svg", "box", "yes"]);
     assert!((1.0..=8.0).contains(&median), "{listed}");
-    assert!(scene.biplane(&["run"]).1.contains("Nothing to do: 23 items cached."));
+    assert!(scene.biplane(&["run"]).1.contains("Nothing to do: 26 items cached."));
     assert_eq!(scene.biplane(&["doctor"]).2, "", "it reads what was matched");
 }
 

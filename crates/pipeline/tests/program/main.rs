@@ -7,6 +7,7 @@ mod edits;
 mod exports;
 mod messages;
 mod models;
+mod report;
 mod scene;
 mod slices;
 mod study;

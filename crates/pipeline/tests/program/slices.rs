@@ -67,9 +67,9 @@ fn a_volume_becomes_contours_and_a_second_run_does_nothing() {
     let page = scene.read("results/report.html");
     assert!(page.contains("id=\"slices\"") && page.contains("src=\"slices&#x2f;ball.svg\""));
     let (_, out, _) = scene.biplane(&["run"]);
-    assert!(out.contains("Nothing to do: 24 items cached."), "{out}");
+    assert!(out.contains("Nothing to do: 27 items cached."), "{out}");
     let (_, why, _) = scene.biplane(&["explain"]);
-    assert_eq!(why, "nothing would run: 24 items are cached\n");
+    assert_eq!(why, "nothing would run: 27 items are cached\n");
     scene.edit("label = 3 }", "label = 3, smoothing_px = 1.5 }");
     let (_, why, _) = scene.biplane(&["explain"]);
     assert_eq!(
@@ -103,7 +103,7 @@ fn a_slice_put_right_is_taken_and_only_its_bone_runs() {
     assert!(code == 2 && err.contains("did you mean `ball`?"), "{err}");
     // As it was written it is no edit.
     let (_, out, _) = scene.biplane(&["run"]);
-    assert!(out.contains("Nothing to do: 24 items cached."), "{out}");
+    assert!(out.contains("Nothing to do: 27 items cached."), "{out}");
     assert!(out.contains("Edited contours: 0 file(s) used, 1 not edited yet"), "{out}");
 
     let svg = scene.read("edits/slices/ball/4.svg");
@@ -142,7 +142,7 @@ fn a_slice_put_right_is_taken_and_only_its_bone_runs() {
         listed.lines().find(|l| l.contains("slices/ball/4.svg")).unwrap().split_whitespace().collect();
     assert_eq!(row[..3], ["edits/slices/ball/4.svg", "ball", "yes"]);
     assert!((1.0..3.0).contains(&row[4].parse::<f64>().unwrap()), "{listed}");
-    assert!(scene.biplane(&["run"]).1.contains("Nothing to do: 25 items cached."));
+    assert!(scene.biplane(&["run"]).1.contains("Nothing to do: 28 items cached."));
 
     // Another volume of the same size: the edit is kept, and said to be of the old one.
     let mut other = labels([COLUMNS, ROWS, SLICES]);
