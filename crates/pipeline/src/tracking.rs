@@ -2,7 +2,7 @@
 //!
 //! Every frame was matched by itself, so one edited contour reruns one frame. Then, for each body of a trial:
 //!
-//! 1. Two bodies whose outlines were drawn along the same edges are each tried once without the other's ([`shared`]).
+//! 1. Two bodies whose outlines were drawn along the same edges are each tried once without the other's.
 //! 2. Frames that are good and go with each other are **settled**. Frames that are good but jump, doubtful, ambiguous or failed are **open**
 //!    ([`biplane_trial::jumps`]).
 //! 3. In rounds, each open frame next to a settled one is tried from where that says the body is, from before, from after and from between; what
@@ -32,7 +32,7 @@ use crate::steps::ItemError;
 pub struct Single {
     /// One a body of the frame; none where it could not be matched.
     pub matches: Vec<Option<Hashed<Match>>>,
-    /// Places of bodies that were drawn to the same edges, and the share of them ([`shared`]).
+    /// Places of bodies that were drawn to the same edges, and the share of them, of the body that has fewer in the view where it is largest.
     pub shared: Vec<([usize; 2], f64)>,
 }
 

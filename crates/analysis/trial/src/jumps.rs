@@ -174,7 +174,7 @@ mod tests {
         let mut noise = |sigma: f64| sigma * (0..12).map(|_| rng.random::<f64>() - 0.5).sum::<f64>();
         (0..count)
             .map(|k| {
-                let phase = 6.283 * k as f64 / count as f64;
+                let phase = std::f64::consts::TAU * k as f64 / count as f64;
                 let value = |axis: usize| {
                     let [size, times, start] = waves[axis];
                     size * (times * phase + start).sin()
@@ -204,9 +204,9 @@ mod tests {
             let count = rng.random_range(40..200);
             let mut trial = trial(&mut rng, count);
             // Some frames failed.
-            for k in 0..count {
+            for frame in &mut trial {
                 if rng.random::<f64>() < 0.05 {
-                    trial[k] = None;
+                    *frame = None;
                 }
             }
             frames += found(&trial).len();
