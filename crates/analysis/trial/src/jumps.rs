@@ -1,7 +1,7 @@
 //! Which frames do not go with their neighbours: single ones, and runs that leave for another basin and come back.
 //!
-//! The step from one known frame to the next has a velocity, of the centroid and of turning. It is compared with the median of those of up
-//! to three steps before and three after. What a step deviates by is usual up to `factor` times the median of all the trial's steps: a fast
+//! The step from one known frame to the next has a velocity, of the centroid and of turning. It is compared with all that lies between the median of
+//! up to three steps before and that of three after: so a body may stop, or turn round, within a frame. What a step deviates by is usual up to `factor` times the median of all the trial's steps: a fast
 //! motion has a large median. Where it deviates by more the trial breaks in two.
 //!
 //! Of the segments between breaks the chain with the most frames is kept whose members go on from each other in the same way, over what
@@ -72,13 +72,23 @@ fn aside(before: usize, after: usize) -> f64 {
     if before + after > 0.0 { (places(after) - places(before)).abs() / (before + after) } else { 0.0 }
 }
 
-/// What the steps beside one do in the middle.
-fn usual_velocity(before: &[[Vector3; 2]], after: &[[Vector3; 2]]) -> [Vector3; 2] {
-    let beside = || {
-        let before = &before[before.len().saturating_sub(BESIDE)..];
-        before.iter().chain(&after[..after.len().min(BESIDE)])
-    };
-    [0, 1].map(|k| median(beside().map(|v| v[k]).collect()))
+/// By how much a step's velocity lies off all that is between what the steps before it and those after it do in the middle: a body that stops
+/// or turns round within a frame or two, as in a landing, does not jump.
+fn deviation(step: &[Vector3; 2], before: &[[Vector3; 2]], after: &[[Vector3; 2]]) -> [f64; 2] {
+    let (before, after) = (&before[before.len().saturating_sub(BESIDE)..], &after[..after.len().min(BESIDE)]);
+    [0, 1].map(|k| {
+        let middle = |steps: &[[Vector3; 2]]| median(steps.iter().map(|v| v[k]).collect());
+        let (from, to) = match (before.is_empty(), after.is_empty()) {
+            (true, true) => (Vector3::zeros(), Vector3::zeros()),
+            (true, false) => (middle(after), middle(after)),
+            (false, true) => (middle(before), middle(before)),
+            (false, false) => (middle(before), middle(after)),
+        };
+        let along = to - from;
+        let length = along.norm_squared();
+        let share = if length > 0.0 { ((step[k] - from).dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
+        (step[k] - from - along * share).norm()
+    })
 }
 
 /// Which of the frames of a trial, `None` where nothing is known, do not go with the others. `pivot` is the middle of the body (model, mm).
@@ -90,11 +100,8 @@ pub fn jumps(frames: &[Option<Timed>], pivot: &Point3, params: &JumpParams) -> J
         return Jumps::default();
     }
     let steps: Vec<[Vector3; 2]> = known.windows(2).map(|w| velocity(&w[0].1, &w[1].1, pivot)).collect();
-    let deviation = |k: usize| {
-        let usual = usual_velocity(&steps[..k], &steps[k + 1..]);
-        [0, 1].map(|i| (steps[k][i] - usual[i]).norm())
-    };
-    let deviations: Vec<[f64; 2]> = (0..steps.len()).map(deviation).collect();
+    let deviations: Vec<[f64; 2]> =
+        (0..steps.len()).map(|k| deviation(&steps[k], &steps[..k], &steps[k + 1..])).collect();
     let usual = [0, 1].map(|i| {
         let mut all: Vec<f64> = deviations.iter().map(|d| d[i]).collect();
         all.sort_by(f64::total_cmp);
@@ -122,10 +129,10 @@ pub fn jumps(frames: &[Option<Timed>], pivot: &Point3, params: &JumpParams) -> J
         let (from, to) = (&known[a[1]].1, &known[b[0]].1);
         let step = velocity(from, to, pivot);
         let (before, after) = (&steps[a[0]..a[1]], &steps[b[0]..b[1]]);
-        let usual = usual_velocity(before, after);
+        let off = deviation(&step, before, after);
         let frames = (to.at - from.at).max(1.0);
         let aside = aside(before.len(), after.len());
-        (0..2).all(|i| (step[i] - usual[i]).norm() <= (1.0 + aside) * limit(i, frames))
+        (0..2).all(|i| off[i] <= (1.0 + aside) * limit(i, frames))
     };
     // The chain with the most frames that ends with each segment.
     let size = |s: [usize; 2]| s[1] - s[0] + 1;
@@ -241,6 +248,38 @@ mod tests {
         }
         println!("{seen} of 1000 flips found exactly, {wrong} with a frame too many");
         assert!(seen >= 950 && wrong <= 20, "{seen} {wrong}");
+    }
+
+    #[test]
+    fn a_landing_is_no_jump() {
+        let mut rng = StdRng::seed_from_u64(14);
+        for (speed, over) in [(2.0, 0), (5.0, 0), (10.0, 1), (20.0, 3), (20.0, 5)] {
+            let mut flagged = 0;
+            for _ in 0..200 {
+                let (mut at, mut velocity) = (0.0, speed);
+                let frames: Vec<Option<Timed>> = (0..60)
+                    .map(|k| {
+                        let mut noise =
+                            |sigma: f64| sigma * (0..12).map(|_| rng.random::<f64>() - 0.5).sum::<f64>();
+                        let place = Vector3::new(at + noise(0.02), noise(0.02), noise(0.02));
+                        let turn = Vector3::from_fn(|_, _| noise(0.0005));
+                        if k >= 30 {
+                            velocity = f64::max(velocity - speed / (f64::from(over) + 1.0), 0.0);
+                        }
+                        at += velocity;
+                        Some(Timed {
+                            at: f64::from(k),
+                            pose: Pose::new(UnitQuaternion::from_scaled_axis(turn), place),
+                        })
+                    })
+                    .collect();
+                flagged += usize::from(!jumps(&frames, &Point3::origin(), &PARAMS).frames.is_empty());
+            }
+            println!(
+                "{speed} mm a frame stopped over {over} frames: {flagged} of 200 trials with a flagged frame"
+            );
+            assert_eq!(flagged, 0, "{speed} mm a frame, over {over}");
+        }
     }
 
     #[test]
