@@ -16,6 +16,8 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 /// A body is taken for nearly symmetric if its points come to lie this near its surface, root mean square over that of their distances from the
 /// centroid. Of the phantom's bodies the tray and the proximal tibia do.
 const NEARLY: f64 = 0.045;
+/// A body whose points spread so nearly alike in all directions, least over most, has no principal axes: a ball looks the same from everywhere.
+const ROUND: f64 = 0.98;
 /// Points that are tried.
 const TRIED: usize = 400;
 /// Rotations nearer than this to the pose itself are in its own basin, rad.
@@ -46,7 +48,11 @@ impl NearSymmetries {
             let off = v - centroid;
             spread += off * off.transpose();
         }
-        let axes = spread.symmetric_eigen().eigenvectors;
+        let parts = spread.symmetric_eigen();
+        if parts.eigenvalues.min() > ROUND * parts.eigenvalues.max() {
+            return Self::default();
+        }
+        let axes = parts.eigenvectors;
         let size = (spread.trace() / vertices.len().max(1) as f64).sqrt();
         let step = (vertices.len() / TRIED).max(1);
         let moved = |by: &Matrix3<f64>| {
